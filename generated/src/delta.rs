@@ -206,7 +206,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 98 operations (40 additions, 57 multiplications, 1 divisions), 1 square roots, 3 trigonometric pairs, 0 signs, 102 intermediates.
+    /// 94 operations (40 additions, 53 multiplications, 1 divisions), 1 square roots, 3 trigonometric pairs, 0 signs, 98 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -216,31 +216,27 @@ impl Delta {
         let [(s_arm_leg1, c_arm_leg1), (s_arm_leg3, c_arm_leg3), (s_arm_leg2, c_arm_leg2),
         ] = ::overact::math::sin_cos_all([actuators[0], actuators[2], actuators[1]]);
         let t4 = 0.05 - (0.2 + 0.24 * c_arm_leg1);
-        let t9 = 0.1 + 0.12 * c_arm_leg3 - 0.025;
-        let t10 = t4 - t9;
-        let t15 = s_arm_leg1 - s_arm_leg3;
-        let t19 = 0.5 * (t10 * t10 + 3.0 * (t9 * t9) + 0.0576 * (t15 * t15));
-        let t22 = s_arm_leg1 - s_arm_leg2;
-        let t23 = 0.24 * t22;
-        let t27 = 0.1 + 0.12 * c_arm_leg2 - 0.025;
-        let t28 = t4 - t27;
-        let t29 = 0.24 * t15;
-        let t31 = t23 * t10 - t28 * t29;
-        let t35 = 0.04330127018922194
-            - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2);
-        let t39 = 0.17320508075688776 + 0.20784609690826528 * c_arm_leg3
+        let t10 = t4 - (0.1 + 0.12 * c_arm_leg3 - 0.025);
+        let t14 = 0.17320508075688776 + 0.20784609690826528 * c_arm_leg3
             - 0.04330127018922194;
-        let t41 = t35 * t10 - t39 * t28;
-        let t52 = 0.5 * (t28 * t28 + 3.0 * (t27 * t27) + 0.0576 * (t22 * t22));
-        let t60 = t39 * t23 - t35 * t29;
-        let t66 = 1.0 / (t60 * t60 + t31 * t31 + t41 * t41);
-        let t67 = (t19 * (t23 * t31 + t35 * t41) - t52 * (t39 * t41 + t29 * t31)) * t66;
-        let t79 = (t52 * (t29 * t60 - t10 * t41) + t19 * (t28 * t41 - t23 * t60)) * t66;
-        let t91 = (t52 * (t10 * t31 + t39 * t60) - t19 * (t35 * t60 + t28 * t31)) * t66;
-        let t95 = t66 * (0.3136 - (t67 * t67 + t79 * t79 + t91 * t91));
-        ::overact::guard::reach(t95, "leg1")?;
-        let t96 = ::overact::math::sqrt(t95);
-        Ok([t67 - t4 - t60 * t96, t79 - t31 * t96, t91 - 0.24 * s_arm_leg1 - t41 * t96])
+        let t18 = 0.24 * (s_arm_leg1 - s_arm_leg3);
+        let t21 = 0.5 * (t10 * t10 + t14 * t14 + t18 * t18);
+        let t25 = 0.24 * (s_arm_leg1 - s_arm_leg2);
+        let t30 = t4 - (0.1 + 0.12 * c_arm_leg2 - 0.025);
+        let t32 = t25 * t10 - t30 * t18;
+        let t36 = 0.04330127018922194
+            - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2);
+        let t39 = t36 * t10 - t14 * t30;
+        let t48 = 0.5 * (t30 * t30 + t36 * t36 + t25 * t25);
+        let t56 = t14 * t25 - t36 * t18;
+        let t62 = 1.0 / (t56 * t56 + t32 * t32 + t39 * t39);
+        let t63 = (t21 * (t25 * t32 + t36 * t39) - t48 * (t14 * t39 + t18 * t32)) * t62;
+        let t75 = (t48 * (t18 * t56 - t10 * t39) + t21 * (t30 * t39 - t25 * t56)) * t62;
+        let t87 = (t48 * (t10 * t32 + t14 * t56) - t21 * (t36 * t56 + t30 * t32)) * t62;
+        let t91 = t62 * (0.3136 - (t63 * t63 + t75 * t75 + t87 * t87));
+        ::overact::guard::reach(t91, "leg1")?;
+        let t92 = ::overact::math::sqrt(t91);
+        Ok([t63 - t4 - t56 * t92, t75 - t32 * t92, t87 - 0.24 * s_arm_leg1 - t39 * t92])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -249,78 +245,79 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 176 operations (75 additions, 92 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 188 intermediates.
+    /// 156 operations (67 additions, 80 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 168 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * pose[2];
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * t1;
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let minus_s_arm_leg1 = t6 * (t7 * t12 + t14 * t17);
-        let c_arm_leg1 = t6 * (t14 * t12 - t7 * t17);
-        let t36 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t36, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t36);
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t36) / (0.2688 * c_rod_leg1);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * t1;
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let minus_s_arm_leg1 = t6 * (t7 * t11 + t13 * t16);
+        let c_arm_leg1 = t6 * (t13 * t11 - t7 * t16);
+        let t34 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t34, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t34);
+        let t36 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t16 / t36;
+        let c_cross_leg1 = (t10 + -0.0576) / t36;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t63 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t66 = pose[0] - 0.025 + 0.1;
-        let t67 = 0.5 * t66;
-        let t68 = 0.8660254037844387 * t63 - t67;
-        let t71 = 0.2304 * (t68 * t68 + t3);
+        let t56 = t0 + 0.025;
+        let t57 = t56 * t56;
+        let t59 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t62 = t57 + t59 * t59 + t3;
+        let t65 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t67 = 0.8660254037844387 * t56 - 0.5 * t65;
+        let t68 = pose[1] + t67;
+        let t69 = t68 * t68;
+        let t71 = 0.2304 * (t62 - t69);
         let t72 = 1.0 / t71;
-        let t73 = t66 * t66;
-        let t76 = t73 + t63 * t63 + t3;
-        let t78 = t76 - 0.3136 + 0.0576;
-        let t80 = 0.48 * t68;
-        let t82 = t71 - t78 * t78;
-        ::overact::guard::reach(t82, "leg2")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let minus_s_arm_leg2 = t72 * (t7 * t78 + t80 * t83);
-        let c_arm_leg2 = t72 * (t80 * t78 - t7 * t83);
-        let t101 = 0.8660254037844387 * t66;
-        let t103 = t101 + 0.5 * t63;
-        let t104 = t103 * t103;
-        let t106 = 1.0 - 3.188775510204082 * t104;
-        ::overact::guard::reach(t106, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t106);
-        let s_cross_leg2 = 2.0833333333333335 * t83 / (0.56 * c_rod_leg2);
-        let c_cross_leg2 = (t76 - (0.0576 + t104) - 0.3136 * t106)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t103;
-        let t134 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t136 = t67 + 0.8660254037844387 * t134;
-        let t139 = 0.2304 * (t136 * t136 + t3);
-        let t140 = 1.0 / t139;
-        let t141 = 0.48 * t136;
-        let t144 = t73 + t134 * t134 + t3;
-        let t146 = t144 - 0.3136 + 0.0576;
-        let t148 = t139 - t146 * t146;
-        ::overact::guard::reach(t148, "leg3")?;
-        let t149 = ::overact::math::sqrt(t148);
-        let s_arm_leg3 = t140 * (t141 * t149 - t7 * t146);
-        let minus_c_arm_leg3 = t140 * (t141 * t146 + t7 * t149);
-        let t168 = t101 - 0.5 * t134;
-        let t169 = t168 * t168;
-        let t171 = 1.0 - 3.188775510204082 * t169;
-        ::overact::guard::reach(t171, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t171);
-        let s_cross_leg3 = 2.0833333333333335 * t149 / (0.56 * c_rod_leg3);
-        let c_cross_leg3 = (t144 - (0.0576 + t169) - 0.3136 * t171)
-            / (0.2688 * c_rod_leg3);
-        let s_rod_leg3 = 1.7857142857142858 * t168;
+        let t73 = t62 - 0.3136;
+        let t74 = t73 + 0.0576;
+        let t77 = 0.5 * t56;
+        let t79 = 0.48 * (0.8660254037844387 * t59 - t77);
+        let t81 = t71 - t74 * t74;
+        ::overact::guard::reach(t81, "leg2")?;
+        let t82 = ::overact::math::sqrt(t81);
+        let minus_s_arm_leg2 = t72 * (t7 * t74 + t79 * t82);
+        let c_arm_leg2 = t72 * (t79 * t74 - t7 * t82);
+        let t100 = 1.0 - 3.188775510204082 * t69;
+        ::overact::guard::reach(t100, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t100);
+        let t102 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t82 / t102;
+        let c_cross_leg2 = (-0.0576 + t73) / t102;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t68;
+        let t125 = t57 + t65 * t65 + t3;
+        let t126 = t67 * t67;
+        let t128 = 0.2304 * (t125 - t126);
+        let t129 = 1.0 / t128;
+        let t132 = 0.48 * (t77 + 0.8660254037844387 * t65);
+        let t133 = t125 - 0.3136;
+        let t134 = t133 + 0.0576;
+        let t136 = t128 - t134 * t134;
+        ::overact::guard::reach(t136, "leg3")?;
+        let t137 = ::overact::math::sqrt(t136);
+        let s_arm_leg3 = t129 * (t132 * t137 - t7 * t134);
+        let minus_c_arm_leg3 = t129 * (t132 * t134 + t7 * t137);
+        let t155 = 1.0 - 3.188775510204082 * t126;
+        ::overact::guard::reach(t155, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t155);
+        let t157 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t137 / t157;
+        let c_cross_leg3 = (-0.0576 + t133) / t157;
+        let s_rod_leg3 = 1.7857142857142858 * t67;
         Ok([
             ::overact::math::atan2(
                 -(0.9582318304121665 * minus_s_arm_leg1
@@ -346,7 +343,7 @@ impl Delta {
             ) + 2.0265110022916346,
             ::overact::math::atan2(
                 -(minus_s_rod_leg2 + 0.0000000000000009023759757123874 * c_rod_leg2),
-                c_rod_leg2 - 0.0000000000000016113856709149776 * t103,
+                c_rod_leg2 - 0.0000000000000016113856709149776 * t68,
             ) + 0.0000000000000009023759757123874,
             ::overact::math::atan2(
                 0.9582318304121668 * s_arm_leg3 + 0.2859925858915727 * minus_c_arm_leg3,
@@ -358,7 +355,7 @@ impl Delta {
             ) + 2.0265110022916355,
             ::overact::math::atan2(
                 s_rod_leg3 - 0.0000000000000001832623884657901 * c_rod_leg3,
-                c_rod_leg3 + 0.0000000000000003272542651174823 * t168,
+                c_rod_leg3 + 0.0000000000000003272542651174823 * t67,
             ) + 0.0000000000000001832623884657901,
         ])
     }
@@ -369,49 +366,50 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 97 operations (43 additions, 51 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 102 intermediates.
+    /// 95 operations (41 additions, 51 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 100 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * pose[2];
-        let t12 = t2 + pose[1] * pose[1] + t3 - 0.3136 + 0.0576;
-        let t14 = 0.48 * t1;
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let minus_s_arm_leg1 = t6 * (t7 * t12 + t14 * t17);
-        let c_arm_leg1 = t6 * (t14 * t12 - t7 * t17);
-        let t35 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t38 = pose[0] - 0.025 + 0.1;
-        let t39 = 0.5 * t38;
-        let t40 = 0.8660254037844387 * t35 - t39;
-        let t43 = 0.2304 * (t40 * t40 + t3);
-        let t44 = 1.0 / t43;
-        let t45 = t38 * t38;
-        let t50 = t45 + t35 * t35 + t3 - 0.3136 + 0.0576;
-        let t52 = 0.48 * t40;
-        let t54 = t43 - t50 * t50;
-        ::overact::guard::reach(t54, "leg2")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let minus_s_arm_leg2 = t44 * (t7 * t50 + t52 * t55);
-        let c_arm_leg2 = t44 * (t52 * t50 - t7 * t55);
-        let t73 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t75 = t39 + 0.8660254037844387 * t73;
-        let t78 = 0.2304 * (t75 * t75 + t3);
-        let t79 = 1.0 / t78;
-        let t80 = 0.48 * t75;
-        let t85 = t45 + t73 * t73 + t3 - 0.3136 + 0.0576;
-        let t87 = t78 - t85 * t85;
-        ::overact::guard::reach(t87, "leg3")?;
-        let t88 = ::overact::math::sqrt(t87);
-        let s_arm_leg3 = t79 * (t80 * t88 - t7 * t85);
-        let minus_c_arm_leg3 = t79 * (t80 * t85 + t7 * t88);
+        let t11 = t4 + pose[1] * pose[1] - 0.3136 + 0.0576;
+        let t13 = 0.48 * t1;
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let minus_s_arm_leg1 = t6 * (t7 * t11 + t13 * t16);
+        let c_arm_leg1 = t6 * (t13 * t11 - t7 * t16);
+        let t34 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t36 = t0 + 0.025;
+        let t37 = 0.5 * t36;
+        let t38 = 0.8660254037844387 * t34 - t37;
+        let t41 = 0.2304 * (t38 * t38 + t3);
+        let t42 = 1.0 / t41;
+        let t43 = t36 * t36;
+        let t48 = t43 + t34 * t34 + t3 - 0.3136 + 0.0576;
+        let t50 = 0.48 * t38;
+        let t52 = t41 - t48 * t48;
+        ::overact::guard::reach(t52, "leg2")?;
+        let t53 = ::overact::math::sqrt(t52);
+        let minus_s_arm_leg2 = t42 * (t7 * t48 + t50 * t53);
+        let c_arm_leg2 = t42 * (t50 * t48 - t7 * t53);
+        let t71 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t73 = t37 + 0.8660254037844387 * t71;
+        let t76 = 0.2304 * (t73 * t73 + t3);
+        let t77 = 1.0 / t76;
+        let t78 = 0.48 * t73;
+        let t83 = t43 + t71 * t71 + t3 - 0.3136 + 0.0576;
+        let t85 = t76 - t83 * t83;
+        ::overact::guard::reach(t85, "leg3")?;
+        let t86 = ::overact::math::sqrt(t85);
+        let s_arm_leg3 = t77 * (t78 * t86 - t7 * t83);
+        let minus_c_arm_leg3 = t77 * (t78 * t83 + t7 * t86);
         Ok([
             ::overact::math::atan2(
                 -(0.9582318304121665 * minus_s_arm_leg1
@@ -436,109 +434,111 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 164 operations (58 additions, 91 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 161 intermediates.
+    /// 144 operations (50 additions, 79 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 141 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t22 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t40;
-        let t43 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t46 = pose[0] - 0.025 + 0.1;
-        let t47 = 0.5 * t46;
-        let t48 = 0.8660254037844387 * t43 - t47;
-        let t51 = 0.2304 * (t48 * t48 + t3);
-        let t52 = t46 * t46;
-        let t55 = t52 + t43 * t43 + t3;
-        let t57 = t55 - 0.3136 + 0.0576;
-        let t59 = t51 - t57 * t57;
-        ::overact::guard::reach(t59, "leg2")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.8660254037844387 * t46;
-        let t64 = t62 + 0.5 * t43;
-        let t65 = t64 * t64;
-        let t67 = 1.0 - 3.188775510204082 * t65;
-        ::overact::guard::reach(t67, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t67);
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t36 = t0 + 0.025;
+        let t37 = t36 * t36;
+        let t39 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t42 = t37 + t39 * t39 + t3;
+        let t45 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t47 = 0.8660254037844387 * t36 - 0.5 * t45;
+        let t48 = pose[1] + t47;
+        let t49 = t48 * t48;
+        let t51 = 0.2304 * (t42 - t49);
+        let t52 = t42 - 0.3136;
+        let t53 = t52 + 0.0576;
+        let t55 = t51 - t53 * t53;
+        ::overact::guard::reach(t55, "leg2")?;
+        let t56 = ::overact::math::sqrt(t55);
+        let t58 = 1.0 - 3.188775510204082 * t49;
+        ::overact::guard::reach(t58, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t58);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t60 / (0.56 * c_rod_leg2);
+        let t60 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t56 / t60;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t71 = 4.166666666666667 / s_cross_leg2;
-        let t73 = t64 * (1.7857142857142858 / c_rod_leg2);
-        let t75 = 1.0 / t51;
-        let t76 = 0.48 * t48;
-        let c_arm_leg2 = t75 * (t76 * t57 - t14 * t60);
-        let c_cross_leg2 = (t55 - (0.0576 + t65) - 0.3136 * t67) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t75 * (t14 * t57 + t76 * t60);
+        let t62 = 4.166666666666667 / s_cross_leg2;
+        let t64 = t48 * (1.7857142857142858 / c_rod_leg2);
+        let t66 = 1.0 / t51;
+        let t68 = 0.5 * t36;
+        let t70 = 0.48 * (0.8660254037844387 * t39 - t68);
+        let c_arm_leg2 = t66 * (t70 * t53 - t13 * t56);
+        let c_cross_leg2 = (-0.0576 + t52) / t60;
+        let minus_s_arm_leg2 = t66 * (t13 * t53 + t70 * t56);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vx_leg2 = t71 * (0.8660254037844387 * t73 - 0.5 * c_armcross_leg2);
-        let t98 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t100 = t47 + 0.8660254037844387 * t98;
-        let t103 = 0.2304 * (t100 * t100 + t3);
-        let t106 = t52 + t98 * t98 + t3;
-        let t108 = t106 - 0.3136 + 0.0576;
-        let t110 = t103 - t108 * t108;
-        ::overact::guard::reach(t110, "leg3")?;
-        let t111 = ::overact::math::sqrt(t110);
-        let t114 = t62 - 0.5 * t98;
-        let t115 = t114 * t114;
-        let t117 = 1.0 - 3.188775510204082 * t115;
-        ::overact::guard::reach(t117, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t117);
+        let garm_vx_leg2 = t62 * (0.8660254037844387 * t64 - 0.5 * c_armcross_leg2);
+        let t89 = t37 + t45 * t45 + t3;
+        let t90 = t47 * t47;
+        let t92 = 0.2304 * (t89 - t90);
+        let t93 = t89 - 0.3136;
+        let t94 = t93 + 0.0576;
+        let t96 = t92 - t94 * t94;
+        ::overact::guard::reach(t96, "leg3")?;
+        let t97 = ::overact::math::sqrt(t96);
+        let t99 = 1.0 - 3.188775510204082 * t90;
+        ::overact::guard::reach(t99, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t99);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t111 / (0.56 * c_rod_leg3);
+        let t101 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t97 / t101;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t121 = 4.166666666666667 / s_cross_leg3;
-        let t122 = 1.0 / t103;
-        let t123 = 0.48 * t100;
-        let minus_c_arm_leg3 = t122 * (t123 * t108 + t14 * t111);
-        let c_cross_leg3 = (t106 - (0.0576 + t115) - 0.3136 * t117)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t122 * (t123 * t111 - t14 * t108);
+        let t103 = 4.166666666666667 / s_cross_leg3;
+        let t104 = 1.0 / t92;
+        let t107 = 0.48 * (t68 + 0.8660254037844387 * t45);
+        let minus_c_arm_leg3 = t104 * (t107 * t94 + t13 * t97);
+        let c_cross_leg3 = (-0.0576 + t93) / t101;
+        let s_arm_leg3 = t104 * (t107 * t97 - t13 * t94);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t143 = t114 * (1.7857142857142858 / c_rod_leg3);
-        let garm_vx_leg3 = t121
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t143);
+        let t123 = t47 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t103
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t123);
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
-        let garm_vy_leg2 = t71 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t73);
-        let garm_vy_leg3 = t121
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t143);
+        let garm_vy_leg1 = t34 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t62 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t64);
+        let garm_vy_leg3 = t103
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t123);
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t71;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t62;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t121;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t103;
         Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
             [garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
@@ -604,149 +604,151 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 253 operations (92 additions, 143 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 250 intermediates.
+    /// 233 operations (84 additions, 131 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 230 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t22 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t40;
-        let t44 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t47 = pose[0] - 0.025 + 0.1;
-        let t48 = 0.5 * t47;
-        let t49 = 0.8660254037844387 * t44 - t48;
-        let t52 = 0.2304 * (t49 * t49 + t3);
-        let t53 = t47 * t47;
-        let t56 = t53 + t44 * t44 + t3;
-        let t58 = t56 - 0.3136 + 0.0576;
-        let t60 = t52 - t58 * t58;
-        ::overact::guard::reach(t60, "leg2")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t63 = 0.8660254037844387 * t47;
-        let t65 = t63 + 0.5 * t44;
-        let t66 = t65 * t65;
-        let t68 = 1.0 - 3.188775510204082 * t66;
-        ::overact::guard::reach(t68, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t37 = t0 + 0.025;
+        let t38 = t37 * t37;
+        let t40 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t43 = t38 + t40 * t40 + t3;
+        let t46 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t48 = 0.8660254037844387 * t37 - 0.5 * t46;
+        let t49 = pose[1] + t48;
+        let t50 = t49 * t49;
+        let t52 = 0.2304 * (t43 - t50);
+        let t53 = t43 - 0.3136;
+        let t54 = t53 + 0.0576;
+        let t56 = t52 - t54 * t54;
+        ::overact::guard::reach(t56, "leg2")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t59 = 1.0 - 3.188775510204082 * t50;
+        ::overact::guard::reach(t59, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t59);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t61 / (0.56 * c_rod_leg2);
+        let t61 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t57 / t61;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t72 = 4.166666666666667 / s_cross_leg2;
-        let t74 = t65 * (1.7857142857142858 / c_rod_leg2);
-        let t76 = 1.0 / t52;
-        let t77 = 0.48 * t49;
-        let c_arm_leg2 = t76 * (t77 * t58 - t14 * t61);
-        let c_cross_leg2 = (t56 - (0.0576 + t66) - 0.3136 * t68) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t76 * (t14 * t58 + t77 * t61);
+        let t63 = 4.166666666666667 / s_cross_leg2;
+        let t65 = t49 * (1.7857142857142858 / c_rod_leg2);
+        let t67 = 1.0 / t52;
+        let t69 = 0.5 * t37;
+        let t71 = 0.48 * (0.8660254037844387 * t40 - t69);
+        let c_arm_leg2 = t67 * (t71 * t54 - t13 * t57);
+        let c_cross_leg2 = (-0.0576 + t53) / t61;
+        let minus_s_arm_leg2 = t67 * (t13 * t54 + t71 * t57);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
-        let t101 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t103 = t48 + 0.8660254037844387 * t101;
-        let t106 = 0.2304 * (t103 * t103 + t3);
-        let t109 = t53 + t101 * t101 + t3;
-        let t111 = t109 - 0.3136 + 0.0576;
-        let t113 = t106 - t111 * t111;
-        ::overact::guard::reach(t113, "leg3")?;
-        let t114 = ::overact::math::sqrt(t113);
-        let t117 = t63 - 0.5 * t101;
-        let t118 = t117 * t117;
-        let t120 = 1.0 - 3.188775510204082 * t118;
-        ::overact::guard::reach(t120, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        let garm_vx_leg2 = t63 * (0.8660254037844387 * t65 - 0.5 * c_armcross_leg2);
+        let t92 = t38 + t46 * t46 + t3;
+        let t93 = t48 * t48;
+        let t95 = 0.2304 * (t92 - t93);
+        let t96 = t92 - 0.3136;
+        let t97 = t96 + 0.0576;
+        let t99 = t95 - t97 * t97;
+        ::overact::guard::reach(t99, "leg3")?;
+        let t100 = ::overact::math::sqrt(t99);
+        let t102 = 1.0 - 3.188775510204082 * t93;
+        ::overact::guard::reach(t102, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t102);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t114 / (0.56 * c_rod_leg3);
+        let t104 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t100 / t104;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t124 = 4.166666666666667 / s_cross_leg3;
-        let t125 = 1.0 / t106;
-        let t126 = 0.48 * t103;
-        let minus_c_arm_leg3 = t125 * (t126 * t111 + t14 * t114);
-        let c_cross_leg3 = (t109 - (0.0576 + t118) - 0.3136 * t120)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t125 * (t126 * t114 - t14 * t111);
+        let t106 = 4.166666666666667 / s_cross_leg3;
+        let t107 = 1.0 / t95;
+        let t110 = 0.48 * (t69 + 0.8660254037844387 * t46);
+        let minus_c_arm_leg3 = t107 * (t110 * t97 + t13 * t100);
+        let c_cross_leg3 = (-0.0576 + t96) / t104;
+        let s_arm_leg3 = t107 * (t110 * t100 - t13 * t97);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t146 = t117 * (1.7857142857142858 / c_rod_leg3);
-        let garm_vx_leg3 = t124
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t146);
-        let t151 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t126 = t48 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t106
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t126);
+        let t131 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t151, 14.869730172882841, "actuators")?;
-        let t152 = 1.0 / t151;
+        ::overact::guard::platform(t131, 14.869730172882841, "actuators")?;
+        let t132 = 1.0 / t131;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
-        let garm_vy_leg2 = t72 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t74);
-        let garm_vy_leg3 = t124
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t146);
-        let t169 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg1 = t34 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t63 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t65);
+        let garm_vy_leg3 = t106
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t126);
+        let t149 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t170 = t169 * t152;
-        let t177 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t169 * t170;
-        ::overact::guard::platform(t177, 14.869730172882846, "actuators")?;
-        let t178 = 1.0 / t177;
-        let t180 = garm_vy_leg1 - garm_vx_leg1 * t170;
+        let t150 = t149 * t132;
+        let t157 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t149 * t150;
+        ::overact::guard::platform(t157, 14.869730172882846, "actuators")?;
+        let t158 = 1.0 / t157;
+        let t160 = garm_vy_leg1 - garm_vx_leg1 * t150;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t63;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t124;
-        let t198 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t106;
+        let t178 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t199 = t198 * t152;
-        let t206 = t169 * t199
+        let t179 = t178 * t132;
+        let t186 = t149 * t179
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t207 = t206 * t178;
-        let t216 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t187 = t186 * t158;
+        let t196 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t198 * t199 - t206 * t207;
-        ::overact::guard::platform(t216, 34.855350201355726, "actuators")?;
-        let t217 = 1.0 / t216;
-        let t222 = t217 * (garm_vx_leg1 * t199 - minus_garm_vz_leg1 - t207 * t180);
-        let t224 = t178 * t180 - t207 * t222;
-        let t231 = garm_vy_leg2 - garm_vx_leg2 * t170;
-        let t237 = t217 * (garm_vx_leg2 * t199 - minus_garm_vz_leg2 - t207 * t231);
-        let t239 = t178 * t231 - t207 * t237;
-        let t246 = garm_vy_leg3 - garm_vx_leg3 * t170;
-        let t252 = t217 * (garm_vx_leg3 * t199 - minus_garm_vz_leg3 - t207 * t246);
-        let t254 = t178 * t246 - t207 * t252;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t178 * t179 - t186 * t187;
+        ::overact::guard::platform(t196, 34.855350201355726, "actuators")?;
+        let t197 = 1.0 / t196;
+        let t202 = t197 * (garm_vx_leg1 * t179 - minus_garm_vz_leg1 - t187 * t160);
+        let t204 = t158 * t160 - t187 * t202;
+        let t211 = garm_vy_leg2 - garm_vx_leg2 * t150;
+        let t217 = t197 * (garm_vx_leg2 * t179 - minus_garm_vz_leg2 - t187 * t211);
+        let t219 = t158 * t211 - t187 * t217;
+        let t226 = garm_vy_leg3 - garm_vx_leg3 * t150;
+        let t232 = t197 * (garm_vx_leg3 * t179 - minus_garm_vz_leg3 - t187 * t226);
+        let t234 = t158 * t226 - t187 * t232;
         Ok([
             [
-                garm_vx_leg1 * t152 - t170 * t224 + t199 * t222,
-                garm_vx_leg2 * t152 - t170 * t239 + t199 * t237,
-                garm_vx_leg3 * t152 - t170 * t254 + t199 * t252,
+                garm_vx_leg1 * t132 - t150 * t204 + t179 * t202,
+                garm_vx_leg2 * t132 - t150 * t219 + t179 * t217,
+                garm_vx_leg3 * t132 - t150 * t234 + t179 * t232,
             ],
-            [t224, t239, t254],
-            [t222, t237, t252],
+            [t204, t219, t234],
+            [t202, t217, t232],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -757,75 +759,76 @@ impl Delta {
     ///
     /// Output: 9 x 9.
     ///
-    /// 88 operations (21 additions, 67 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 81 intermediates.
+    /// 86 operations (21 additions, 65 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 79 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
         _pose: &[f64; 3],
         joints: &[f64; 9],
     ) -> [[f64; 9]; 9] {
         let t3 = joints[0] + joints[1];
-        let t23 = joints[3] + joints[4];
-        let t66 = joints[6] + joints[7];
+        let t21 = joints[3] + joints[4];
+        let t64 = joints[6] + joints[7];
         let [(s_arm_leg1, c_arm_leg1), (s_armcross_leg1, c_armcross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_arm_leg2, c_arm_leg2),
         (s_armcross_leg2, c_armcross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg3, c_arm_leg3), (s_armcross_leg3, c_armcross_leg3),
         (s_rod_leg3, c_rod_leg3)] = ::overact::math::sin_cos_all([
-            joints[0], t3, joints[2], joints[3], t23, joints[5], joints[6], t66, joints[8],
+            joints[0], t3, joints[2], joints[3], t21, joints[5], joints[6], t64, joints[8],
         ]);
-        let t9 = 0.56 * (s_armcross_leg1 * c_rod_leg1);
-        let t13 = 0.56 * (c_armcross_leg1 * c_rod_leg1);
-        let t28 = s_armcross_leg2 * c_rod_leg2;
-        let t30 = 0.24 * s_arm_leg2 + 0.56 * t28;
-        let t34 = 0.8660254037844387 * c_armcross_leg2;
-        let t42 = 0.5 * c_armcross_leg2;
-        let t43 = c_rod_leg2 * t42;
-        let t49 = 0.8660254037844387
+        let t8 = 0.56 * c_rod_leg1;
+        let t9 = s_armcross_leg1 * t8;
+        let t12 = c_armcross_leg1 * t8;
+        let t26 = s_armcross_leg2 * c_rod_leg2;
+        let t28 = 0.24 * s_arm_leg2 + 0.56 * t26;
+        let t32 = 0.8660254037844387 * c_armcross_leg2;
+        let t40 = 0.5 * c_armcross_leg2;
+        let t41 = c_rod_leg2 * t40;
+        let t47 = 0.8660254037844387
             * (0.20784609690826528 * c_arm_leg2
-                + 0.56 * (c_rod_leg2 * t34 - 0.5 * s_rod_leg2))
-            + 0.5 * (0.12 * c_arm_leg2 + 0.56 * (t43 + 0.8660254037844387 * s_rod_leg2));
-        let t71 = s_armcross_leg3 * c_rod_leg3;
-        let t73 = 0.24 * s_arm_leg3 + 0.56 * t71;
-        let t77 = 0.5 * c_armcross_leg3;
-        let t78 = c_rod_leg3 * t77;
-        let t85 = 0.8660254037844387 * c_armcross_leg3;
-        let t92 = 0.5
-            * (0.56 * (0.8660254037844387 * s_rod_leg3 - t78) - 0.12 * c_arm_leg3)
+                + 0.56 * (c_rod_leg2 * t32 - 0.5 * s_rod_leg2))
+            + 0.5 * (0.12 * c_arm_leg2 + 0.56 * (t41 + 0.8660254037844387 * s_rod_leg2));
+        let t69 = s_armcross_leg3 * c_rod_leg3;
+        let t71 = 0.24 * s_arm_leg3 + 0.56 * t69;
+        let t75 = 0.5 * c_armcross_leg3;
+        let t76 = c_rod_leg3 * t75;
+        let t83 = 0.8660254037844387 * c_armcross_leg3;
+        let t90 = 0.5
+            * (0.56 * (0.8660254037844387 * s_rod_leg3 - t76) - 0.12 * c_arm_leg3)
             - 0.8660254037844387
                 * (0.20784609690826528 * c_arm_leg3
-                    + 0.56 * (c_rod_leg3 * t85 + 0.5 * s_rod_leg3));
+                    + 0.56 * (c_rod_leg3 * t83 + 0.5 * s_rod_leg3));
         [
             [
                 -(0.24 * s_arm_leg1 + t9), -t9, -(0.56 * (c_armcross_leg1 * s_rod_leg1)), 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
-            [0.0, 0.0, 0.56 * c_rod_leg1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, t8, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [
-                -(0.24 * c_arm_leg1 + t13), -t13, 0.56 * (s_armcross_leg1 * s_rod_leg1), 0.0, 0.0,
+                -(0.24 * c_arm_leg1 + t12), -t12, 0.56 * (s_armcross_leg1 * s_rod_leg1), 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.5 * t30, 0.28 * t28,
-                0.56 * (s_rod_leg2 * t42 - 0.8660254037844387 * c_rod_leg2), 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.5 * t28, 0.28 * t26,
+                0.56 * (s_rod_leg2 * t40 - 0.8660254037844387 * c_rod_leg2), 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, -(0.8660254037844387 * t30), -(0.4849742261192857 * t28),
-                -(0.56 * (s_rod_leg2 * t34 + 0.5 * c_rod_leg2)), 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, -(0.8660254037844387 * t28), -(0.4849742261192857 * t26),
+                -(0.56 * (s_rod_leg2 * t32 + 0.5 * c_rod_leg2)), 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, -t49, -(1.12 * t43), 0.56 * (s_armcross_leg2 * s_rod_leg2), 0.0, 0.0,
+                0.0, 0.0, 0.0, -t47, -(1.12 * t41), 0.56 * (s_armcross_leg2 * s_rod_leg2), 0.0, 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5 * t73, 0.28 * t71,
-                0.56 * (s_rod_leg3 * t77 + 0.8660254037844387 * c_rod_leg3),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5 * t71, 0.28 * t69,
+                0.56 * (s_rod_leg3 * t75 + 0.8660254037844387 * c_rod_leg3),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.8660254037844387 * t73, 0.4849742261192857 * t71,
-                0.56 * (s_rod_leg3 * t85 - 0.5 * c_rod_leg3),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.8660254037844387 * t71, 0.4849742261192857 * t69,
+                0.56 * (s_rod_leg3 * t83 - 0.5 * c_rod_leg3),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t92, -(1.12 * t78),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t90, -(1.12 * t76),
                 0.56 * (s_armcross_leg3 * s_rod_leg3),
             ],
         ]
@@ -941,7 +944,7 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 226 operations (78 additions, 133 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 223 intermediates.
+    /// 192 operations (69 additions, 108 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 189 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -949,128 +952,125 @@ impl Delta {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = pose[1] * pose[1];
-        let t8 = t2 + t6 + t3;
-        let t10 = t8 - 0.3136 + 0.0576;
-        let t12 = t5 - t10 * t10;
-        ::overact::guard::reach(t12, "leg1")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = 1.0 - 3.188775510204082 * t6;
-        ::overact::guard::reach(t16, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t16);
+        let t8 = t4 + t6 - 0.3136;
+        let t9 = t8 + 0.0576;
+        let t11 = t5 - t9 * t9;
+        ::overact::guard::reach(t11, "leg1")?;
+        let t12 = ::overact::math::sqrt(t11);
+        let t14 = 1.0 - 3.188775510204082 * t6;
+        ::overact::guard::reach(t14, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t14);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t13 / (0.56 * c_rod_leg1);
+        let t16 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t12 / t16;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t20 = 1.0 / s_cross_leg1;
-        let t21 = 4.166666666666667 * t20;
-        let t22 = 1.0 / t5;
-        let t23 = 0.48 * t1;
-        let t25 = 0.48 * pose[2];
-        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
-        let c_cross_leg1 = (t8 - (0.0576 + t6) - 0.3136 * t16) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
+        let t18 = 1.0 / s_cross_leg1;
+        let t20 = 1.0 / t5;
+        let t21 = 0.48 * t1;
+        let t23 = 0.48 * pose[2];
+        let c_arm_leg1 = t20 * (t21 * t9 - t23 * t12);
+        let c_cross_leg1 = (t8 + -0.0576) / t16;
+        let minus_s_arm_leg1 = t20 * (t23 * t9 + t21 * t12);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t47 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t49 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t21 * (t47 + t49 * twist[1]);
-        let garm_vy_leg1 = t21 * t49;
-        let t63 = c_cross_leg1 * t20 * t47
-            + 0.24 * c_cross_leg1 * garm_vy_leg1 * twist[1] + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t63;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t68 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t71 = pose[0] - 0.025 + 0.1;
-        let t72 = 0.5 * t71;
-        let t73 = 0.8660254037844387 * t68 - t72;
-        let t76 = 0.2304 * (t73 * t73 + t3);
-        let t77 = t71 * t71;
-        let t80 = t77 + t68 * t68 + t3;
-        let t82 = t80 - 0.3136 + 0.0576;
-        let t84 = t76 - t82 * t82;
-        ::overact::guard::reach(t84, "leg2")?;
-        let t85 = ::overact::math::sqrt(t84);
-        let t87 = 0.8660254037844387 * t71;
-        let t89 = t87 + 0.5 * t68;
-        let t90 = t89 * t89;
-        let t92 = 1.0 - 3.188775510204082 * t90;
-        ::overact::guard::reach(t92, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t92);
+        let t45 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2]
+            + pose[1] * rate_rod_leg1;
+        let rate_arm_leg1 = 4.166666666666667 * t18 * t45;
+        let minus_rate_cross_leg1 = grod_vy_leg1
+            * (t45 * (c_cross_leg1 * t18) + s_armcross_leg1 * twist[0]
+                + c_armcross_leg1 * twist[2]);
+        let t55 = t0 + 0.025;
+        let t56 = t55 * t55;
+        let t58 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t61 = t56 + t58 * t58 + t3;
+        let t64 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t66 = 0.8660254037844387 * t55 - 0.5 * t64;
+        let t67 = pose[1] + t66;
+        let t68 = t67 * t67;
+        let t70 = 0.2304 * (t61 - t68);
+        let t71 = t61 - 0.3136;
+        let t72 = t71 + 0.0576;
+        let t74 = t70 - t72 * t72;
+        ::overact::guard::reach(t74, "leg2")?;
+        let t75 = ::overact::math::sqrt(t74);
+        let t77 = 1.0 - 3.188775510204082 * t68;
+        ::overact::guard::reach(t77, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t77);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t85 / (0.56 * c_rod_leg2);
+        let t79 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t75 / t79;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t96 = 1.0 / s_cross_leg2;
-        let t97 = 4.166666666666667 * t96;
-        let t98 = 1.0 / t76;
-        let t99 = 0.48 * t73;
-        let c_arm_leg2 = t98 * (t99 * t82 - t25 * t85);
-        let c_cross_leg2 = (t80 - (0.0576 + t90) - 0.3136 * t92) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t98 * (t25 * t82 + t99 * t85);
+        let t81 = 1.0 / s_cross_leg2;
+        let t83 = 1.0 / t70;
+        let t85 = 0.5 * t55;
+        let t87 = 0.48 * (0.8660254037844387 * t58 - t85);
+        let c_arm_leg2 = t83 * (t87 * t72 - t23 * t75);
+        let c_cross_leg2 = (-0.0576 + t71) / t79;
+        let minus_s_arm_leg2 = t83 * (t23 * t72 + t87 * t75);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t126 = 0.8660254037844387 * c_armcross_leg2 * twist[1]
+        let t110 = 0.8660254037844387 * c_armcross_leg2 * twist[1]
             - 0.5 * c_armcross_leg2 * twist[0] - s_armcross_leg2 * twist[2];
-        let t127 = 1.7857142857142858 / c_rod_leg2;
-        let t128 = t89 * t127;
-        let t129 = 0.8660254037844387 * twist[0];
-        let t130 = 0.5 * twist[1];
-        let t131 = t129 + t130;
-        let rate_arm_leg2 = t97 * (t126 + t128 * t131);
-        let t144 = 0.5 * s_armcross_leg2 * twist[0]
+        let t111 = 1.7857142857142858 / c_rod_leg2;
+        let t112 = 0.8660254037844387 * twist[0];
+        let t113 = 0.5 * twist[1];
+        let minus_rate_rod_leg2 = t111 * (t112 + t113);
+        let t116 = t67 * minus_rate_rod_leg2;
+        let rate_arm_leg2 = 4.166666666666667 * t81 * (t110 + t116);
+        let t126 = c_cross_leg2 * t81;
+        let t130 = 0.5 * s_armcross_leg2 * twist[0]
             - 0.8660254037844387 * s_armcross_leg2 * twist[1]
-            - c_armcross_leg2 * twist[2] - c_cross_leg2 * t96 * t126;
-        let rate_cross_leg2 = t127 * (t144 - 0.24 * c_cross_leg2 * (t97 * t128) * t131);
-        let minus_rate_rod_leg2 = t127 * t131;
-        let t154 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t156 = t72 + 0.8660254037844387 * t154;
-        let t159 = 0.2304 * (t156 * t156 + t3);
-        let t162 = t77 + t154 * t154 + t3;
-        let t164 = t162 - 0.3136 + 0.0576;
-        let t166 = t159 - t164 * t164;
-        ::overact::guard::reach(t166, "leg3")?;
-        let t167 = ::overact::math::sqrt(t166);
-        let t170 = t87 - 0.5 * t154;
-        let t171 = t170 * t170;
-        let t173 = 1.0 - 3.188775510204082 * t171;
-        ::overact::guard::reach(t173, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t173);
+            - c_armcross_leg2 * twist[2] - t126 * t110 - t116 * t126;
+        let rate_cross_leg2 = t111 * t130;
+        let t135 = t56 + t64 * t64 + t3;
+        let t136 = t66 * t66;
+        let t138 = 0.2304 * (t135 - t136);
+        let t139 = t135 - 0.3136;
+        let t140 = t139 + 0.0576;
+        let t142 = t138 - t140 * t140;
+        ::overact::guard::reach(t142, "leg3")?;
+        let t143 = ::overact::math::sqrt(t142);
+        let t145 = 1.0 - 3.188775510204082 * t136;
+        ::overact::guard::reach(t145, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t145);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t167 / (0.56 * c_rod_leg3);
+        let t147 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t143 / t147;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t177 = 1.0 / s_cross_leg3;
-        let t178 = 4.166666666666667 * t177;
-        let t179 = 1.0 / t159;
-        let t180 = 0.48 * t156;
-        let minus_c_arm_leg3 = t179 * (t180 * t164 + t25 * t167);
-        let c_cross_leg3 = (t162 - (0.0576 + t171) - 0.3136 * t173)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t179 * (t180 * t167 - t25 * t164);
+        let t149 = 1.0 / s_cross_leg3;
+        let t151 = 1.0 / t138;
+        let t154 = 0.48 * (t85 + 0.8660254037844387 * t64);
+        let minus_c_arm_leg3 = t151 * (t154 * t140 + t23 * t143);
+        let c_cross_leg3 = (-0.0576 + t139) / t147;
+        let s_arm_leg3 = t151 * (t154 * t143 - t23 * t140);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t207 = 0.5 * minus_c_armcross_leg3 * twist[0]
+        let t177 = 0.5 * minus_c_armcross_leg3 * twist[0]
             + 0.8660254037844387 * minus_c_armcross_leg3 * twist[1]
             - s_armcross_leg3 * twist[2];
-        let t208 = 1.7857142857142858 / c_rod_leg3;
-        let t209 = t170 * t208;
-        let t210 = t129 - t130;
-        let rate_arm_leg3 = t178 * (t207 + t209 * t210);
-        let t223 = 0.5 * s_armcross_leg3 * twist[0]
+        let t178 = 1.7857142857142858 / c_rod_leg3;
+        let rate_rod_leg3 = t178 * (t112 - t113);
+        let t181 = t66 * rate_rod_leg3;
+        let rate_arm_leg3 = 4.166666666666667 * t149 * (t177 + t181);
+        let t191 = c_cross_leg3 * t149;
+        let t195 = 0.5 * s_armcross_leg3 * twist[0]
             + 0.8660254037844387 * s_armcross_leg3 * twist[1]
-            + minus_c_armcross_leg3 * twist[2] - c_cross_leg3 * t177 * t207;
-        let rate_cross_leg3 = t208 * (t223 - 0.24 * c_cross_leg3 * (t178 * t209) * t210);
-        let rate_rod_leg3 = t208 * t210;
+            + minus_c_armcross_leg3 * twist[2] - t191 * t177 - t181 * t191;
+        let rate_cross_leg3 = t178 * t195;
         Ok([
             rate_arm_leg1, -(rate_arm_leg1 + minus_rate_cross_leg1), rate_rod_leg1, rate_arm_leg2,
             rate_cross_leg2 - rate_arm_leg2, -minus_rate_rod_leg2, rate_arm_leg3,
@@ -1086,7 +1086,7 @@ impl Delta {
     ///
     /// Output: 9.
     ///
-    /// 343 operations (123 additions, 205 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 340 intermediates.
+    /// 296 operations (110 additions, 171 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 293 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1095,186 +1095,178 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 9], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = pose[1] * pose[1];
-        let t8 = t2 + t6 + t3;
-        let t10 = t8 - 0.3136 + 0.0576;
-        let t12 = t5 - t10 * t10;
-        ::overact::guard::reach(t12, "leg1")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = 1.0 - 3.188775510204082 * t6;
-        ::overact::guard::reach(t16, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t16);
+        let t8 = t4 + t6 - 0.3136;
+        let t9 = t8 + 0.0576;
+        let t11 = t5 - t9 * t9;
+        ::overact::guard::reach(t11, "leg1")?;
+        let t12 = ::overact::math::sqrt(t11);
+        let t14 = 1.0 - 3.188775510204082 * t6;
+        ::overact::guard::reach(t14, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t14);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t18 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t13 / t18;
+        let t16 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t12 / t16;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t20 = 1.0 / s_cross_leg1;
-        let t21 = 4.166666666666667 * t20;
-        let t22 = 1.0 / t5;
-        let t23 = 0.48 * t1;
-        let t25 = 0.48 * pose[2];
-        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
-        let c_cross_leg1 = (t8 - (0.0576 + t6) - 0.3136 * t16) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
+        let t18 = 4.166666666666667 / s_cross_leg1;
+        let t19 = 1.0 / t5;
+        let t20 = 0.48 * t1;
+        let t22 = 0.48 * pose[2];
+        let c_arm_leg1 = t19 * (t20 * t9 - t22 * t12);
+        let c_cross_leg1 = (t8 + -0.0576) / t16;
+        let minus_s_arm_leg1 = t19 * (t22 * t9 + t20 * t12);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t48 = 0.24 * c_cross_leg1;
-        let t51 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t53 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t21 * (t51 + t53 * twist[1]);
-        let t57 = rate_arm_leg1 * rate_arm_leg1;
-        let t59 = c_cross_leg1 * t20;
-        let garm_vy_leg1 = t21 * t53;
-        let t62 = t48 * garm_vy_leg1;
+        let t45 = pose[1] * grod_vy_leg1;
+        let t46 = t45 * twist[1];
+        let t47 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t46;
+        let rate_arm_leg1 = t18 * t47;
+        let t49 = 0.24 * c_cross_leg1;
+        let t50 = t49 * rate_arm_leg1;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (t59 * t51 + t62 * twist[1] + s_armcross_leg1 * twist[0]
-                + c_armcross_leg1 * twist[2]);
+            * (t50 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2]);
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t73 = minus_rate_cross_leg1 * minus_rate_cross_leg1
-            + rate_rod_leg1 * rate_rod_leg1;
-        let t76 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t48 * t57 + t18 * t73;
-        let t81 = acceleration[1]
-            - (minus_rate_cross_leg1 * (pose[1] * minus_rate_cross_leg1)
-                - pose[1] * t73);
-        let rate_dot_arm_leg1 = t21 * (t76 + t53 * t81);
-        let t94 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t98 = t59 * t76 + t62 * t81 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t57 + t94 + t94;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t98;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t81;
-        let t103 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t106 = pose[0] - 0.025 + 0.1;
-        let t107 = 0.5 * t106;
-        let t108 = 0.8660254037844387 * t103 - t107;
-        let t111 = 0.2304 * (t108 * t108 + t3);
-        let t112 = t106 * t106;
-        let t115 = t112 + t103 * t103 + t3;
-        let t117 = t115 - 0.3136 + 0.0576;
-        let t119 = t111 - t117 * t117;
-        ::overact::guard::reach(t119, "leg2")?;
-        let t120 = ::overact::math::sqrt(t119);
-        let t122 = 0.8660254037844387 * t106;
-        let t124 = t122 + 0.5 * t103;
-        let t125 = t124 * t124;
-        let t127 = 1.0 - 3.188775510204082 * t125;
-        ::overact::guard::reach(t127, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t127);
+        let t60 = rate_rod_leg1 * rate_rod_leg1;
+        let t64 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + rate_arm_leg1 * t50
+            + 0.56 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t60);
+        let t66 = acceleration[1] + pose[1] * t60;
+        let rate_dot_arm_leg1 = t18 * (t64 + t45 * t66);
+        let t75 = t46 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (t49 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t47 * rate_arm_leg1 + t75 + t75);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t66;
+        let t83 = t0 + 0.025;
+        let t84 = t83 * t83;
+        let t86 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t89 = t84 + t86 * t86 + t3;
+        let t92 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t94 = 0.8660254037844387 * t83 - 0.5 * t92;
+        let t95 = pose[1] + t94;
+        let t96 = t95 * t95;
+        let t98 = 0.2304 * (t89 - t96);
+        let t99 = t89 - 0.3136;
+        let t100 = t99 + 0.0576;
+        let t102 = t98 - t100 * t100;
+        ::overact::guard::reach(t102, "leg2")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t105 = 1.0 - 3.188775510204082 * t96;
+        ::overact::guard::reach(t105, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t105);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t129 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t120 / t129;
+        let t107 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t103 / t107;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t131 = 1.0 / s_cross_leg2;
-        let t132 = 4.166666666666667 * t131;
-        let t133 = 1.0 / t111;
-        let t134 = 0.48 * t108;
-        let c_arm_leg2 = t133 * (t134 * t117 - t25 * t120);
-        let c_cross_leg2 = (t115 - (0.0576 + t125) - 0.3136 * t127)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t133 * (t25 * t117 + t134 * t120);
+        let t109 = 1.0 / s_cross_leg2;
+        let t110 = 4.166666666666667 * t109;
+        let t111 = 1.0 / t98;
+        let t113 = 0.5 * t83;
+        let t115 = 0.48 * (0.8660254037844387 * t86 - t113);
+        let c_arm_leg2 = t111 * (t115 * t100 - t22 * t103);
+        let c_cross_leg2 = (-0.0576 + t99) / t107;
+        let minus_s_arm_leg2 = t111 * (t22 * t100 + t115 * t103);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t152 = 0.8660254037844387 * c_armcross_leg2;
-        let t154 = 0.5 * c_armcross_leg2;
+        let t129 = 0.8660254037844387 * c_armcross_leg2;
+        let t131 = 0.5 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t162 = 0.24 * c_cross_leg2;
-        let t167 = t152 * twist[1] - t154 * twist[0] - s_armcross_leg2 * twist[2];
-        let t168 = 1.7857142857142858 / c_rod_leg2;
-        let t169 = t124 * t168;
-        let t170 = 0.8660254037844387 * twist[0];
-        let t171 = 0.5 * twist[1];
-        let t172 = t170 + t171;
-        let rate_arm_leg2 = t132 * (t167 + t169 * t172);
-        let t176 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t168 * t172;
-        let t180 = 0.5 * s_armcross_leg2;
-        let t182 = 0.8660254037844387 * s_armcross_leg2;
-        let t187 = c_cross_leg2 * t131;
-        let t191 = t162 * (t132 * t169);
-        let rate_cross_leg2 = t168
-            * (t180 * twist[0] - t182 * twist[1] - c_armcross_leg2 * twist[2]
-                - t187 * t167 - t191 * t172);
-        let t196 = minus_rate_rod_leg2 * minus_rate_rod_leg2
-            + rate_cross_leg2 * rate_cross_leg2;
-        let t199 = t152 * acceleration[1] - t154 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t162 * t176 + t129 * t196;
-        let t200 = 0.8660254037844387 * acceleration[0];
-        let t201 = 0.5 * acceleration[1];
-        let t207 = t200 + t201 + t124 * t196
-            - rate_cross_leg2 * (t124 * rate_cross_leg2);
-        let rate_dot_arm_leg2 = t132 * (t199 + t169 * t207);
-        let t219 = t124 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t222 = t180 * acceleration[0] - t182 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2]
-            - (0.24 * s_cross_leg2 * t176 - t219 - t219);
-        let rate_dot_cross_leg2 = t168 * (t222 - t187 * t199 - t191 * t207);
-        let minus_rate_dot_rod_leg2 = t168 * t207;
-        let t231 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t233 = t107 + 0.8660254037844387 * t231;
-        let t236 = 0.2304 * (t233 * t233 + t3);
-        let t239 = t112 + t231 * t231 + t3;
-        let t241 = t239 - 0.3136 + 0.0576;
-        let t243 = t236 - t241 * t241;
-        ::overact::guard::reach(t243, "leg3")?;
-        let t244 = ::overact::math::sqrt(t243);
-        let t247 = t122 - 0.5 * t231;
-        let t248 = t247 * t247;
-        let t250 = 1.0 - 3.188775510204082 * t248;
-        ::overact::guard::reach(t250, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t250);
+        let t139 = c_cross_leg2 * t109;
+        let t144 = t129 * twist[1] - t131 * twist[0] - s_armcross_leg2 * twist[2];
+        let t145 = 1.7857142857142858 / c_rod_leg2;
+        let t146 = t95 * t145;
+        let t147 = 0.8660254037844387 * twist[0];
+        let t148 = 0.5 * twist[1];
+        let t149 = t147 + t148;
+        let t150 = t146 * t149;
+        let t151 = t144 + t150;
+        let rate_arm_leg2 = t110 * t151;
+        let t153 = t151 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t145 * t149;
+        let t157 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t158 = 0.5 * s_armcross_leg2;
+        let t160 = 0.8660254037844387 * s_armcross_leg2;
+        let t167 = t146 * t139;
+        let rate_cross_leg2 = t145
+            * (t158 * twist[0] - t160 * twist[1] - c_armcross_leg2 * twist[2]
+                - t139 * t144 - t167 * t149);
+        let t175 = t129 * acceleration[1] - t131 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t139 * t153
+            + 0.56 * c_rod_leg2 * (t157 + rate_cross_leg2 * rate_cross_leg2);
+        let t176 = 0.8660254037844387 * acceleration[0];
+        let t177 = 0.5 * acceleration[1];
+        let t180 = t176 + t177 + t95 * t157;
+        let rate_dot_arm_leg2 = t110 * (t175 + t146 * t180);
+        let t189 = t150 * rate_cross_leg2;
+        let t194 = t158 * acceleration[0] - t160 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t153 - t189 - t189) - t139 * t175;
+        let rate_dot_cross_leg2 = t145 * (t194 - t167 * t180);
+        let minus_rate_dot_rod_leg2 = t145 * t180;
+        let t202 = t84 + t92 * t92 + t3;
+        let t203 = t94 * t94;
+        let t205 = 0.2304 * (t202 - t203);
+        let t206 = t202 - 0.3136;
+        let t207 = t206 + 0.0576;
+        let t209 = t205 - t207 * t207;
+        ::overact::guard::reach(t209, "leg3")?;
+        let t210 = ::overact::math::sqrt(t209);
+        let t212 = 1.0 - 3.188775510204082 * t203;
+        ::overact::guard::reach(t212, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t212);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t252 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t244 / t252;
+        let t214 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t210 / t214;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t254 = 1.0 / s_cross_leg3;
-        let t255 = 4.166666666666667 * t254;
-        let t256 = 1.0 / t236;
-        let t257 = 0.48 * t233;
-        let minus_c_arm_leg3 = t256 * (t257 * t241 + t25 * t244);
-        let c_cross_leg3 = (t239 - (0.0576 + t248) - 0.3136 * t250)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t256 * (t257 * t244 - t25 * t241);
+        let t216 = 1.0 / s_cross_leg3;
+        let t217 = 4.166666666666667 * t216;
+        let t218 = 1.0 / t205;
+        let t221 = 0.48 * (t113 + 0.8660254037844387 * t92);
+        let minus_c_arm_leg3 = t218 * (t221 * t207 + t22 * t210);
+        let c_cross_leg3 = (-0.0576 + t206) / t214;
+        let s_arm_leg3 = t218 * (t221 * t210 - t22 * t207);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t275 = 0.5 * minus_c_armcross_leg3;
-        let t277 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t235 = 0.5 * minus_c_armcross_leg3;
+        let t237 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t285 = 0.24 * c_cross_leg3;
-        let t290 = t275 * twist[0] + t277 * twist[1] - s_armcross_leg3 * twist[2];
-        let t291 = 1.7857142857142858 / c_rod_leg3;
-        let t292 = t247 * t291;
-        let t293 = t170 - t171;
-        let rate_arm_leg3 = t255 * (t290 + t292 * t293);
-        let t297 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t291 * t293;
-        let t301 = 0.5 * s_armcross_leg3;
-        let t303 = 0.8660254037844387 * s_armcross_leg3;
-        let t308 = c_cross_leg3 * t254;
-        let t312 = t285 * (t255 * t292);
-        let rate_cross_leg3 = t291
-            * (t301 * twist[0] + t303 * twist[1] + minus_c_armcross_leg3 * twist[2]
-                - t308 * t290 - t312 * t293);
-        let t317 = rate_rod_leg3 * rate_rod_leg3 + rate_cross_leg3 * rate_cross_leg3;
-        let t320 = t275 * acceleration[0] + t277 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t285 * t297 + t252 * t317;
-        let t326 = t200 - t201
-            - (rate_cross_leg3 * (t247 * rate_cross_leg3) - t247 * t317);
-        let rate_dot_arm_leg3 = t255 * (t320 + t292 * t326);
-        let t338 = t247 * (rate_cross_leg3 * rate_rod_leg3);
-        let t341 = t301 * acceleration[0] + t303 * acceleration[1]
-            + minus_c_armcross_leg3 * acceleration[2]
-            - (0.24 * s_cross_leg3 * t297 - t338 - t338);
-        let rate_dot_cross_leg3 = t291 * (t341 - t308 * t320 - t312 * t326);
-        let rate_dot_rod_leg3 = t291 * t326;
+        let t245 = c_cross_leg3 * t216;
+        let t250 = t235 * twist[0] + t237 * twist[1] - s_armcross_leg3 * twist[2];
+        let t251 = 1.7857142857142858 / c_rod_leg3;
+        let t252 = t94 * t251;
+        let t253 = t147 - t148;
+        let t254 = t252 * t253;
+        let t255 = t250 + t254;
+        let rate_arm_leg3 = t217 * t255;
+        let t257 = t255 * rate_arm_leg3;
+        let rate_rod_leg3 = t251 * t253;
+        let t261 = rate_rod_leg3 * rate_rod_leg3;
+        let t262 = 0.5 * s_armcross_leg3;
+        let t264 = 0.8660254037844387 * s_armcross_leg3;
+        let t271 = t252 * t245;
+        let rate_cross_leg3 = t251
+            * (t262 * twist[0] + t264 * twist[1] + minus_c_armcross_leg3 * twist[2]
+                - t245 * t250 - t271 * t253);
+        let t279 = t235 * acceleration[0] + t237 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t245 * t257
+            + 0.56 * c_rod_leg3 * (t261 + rate_cross_leg3 * rate_cross_leg3);
+        let t282 = t176 - t177 + t94 * t261;
+        let rate_dot_arm_leg3 = t217 * (t279 + t252 * t282);
+        let t291 = t254 * rate_cross_leg3;
+        let t296 = t262 * acceleration[0] + t264 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2] - (t257 - t291 - t291)
+            - t245 * t279;
+        let rate_dot_cross_leg3 = t251 * (t296 - t271 * t282);
+        let rate_dot_rod_leg3 = t251 * t282;
         Ok([
             rate_dot_arm_leg1, -(rate_dot_arm_leg1 + minus_rate_dot_cross_leg1), rate_dot_rod_leg1,
             rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, -minus_rate_dot_rod_leg2,
@@ -1289,7 +1281,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 237 operations (86 additions, 133 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 240 intermediates.
+    /// 217 operations (78 additions, 121 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 220 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1297,138 +1289,140 @@ impl Delta {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t22 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t40;
-        let t44 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t47 = pose[0] - 0.025 + 0.1;
-        let t48 = 0.5 * t47;
-        let t49 = 0.8660254037844387 * t44 - t48;
-        let t52 = 0.2304 * (t49 * t49 + t3);
-        let t53 = t47 * t47;
-        let t56 = t53 + t44 * t44 + t3;
-        let t58 = t56 - 0.3136 + 0.0576;
-        let t60 = t52 - t58 * t58;
-        ::overact::guard::reach(t60, "leg2")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t63 = 0.8660254037844387 * t47;
-        let t65 = t63 + 0.5 * t44;
-        let t66 = t65 * t65;
-        let t68 = 1.0 - 3.188775510204082 * t66;
-        ::overact::guard::reach(t68, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t37 = t0 + 0.025;
+        let t38 = t37 * t37;
+        let t40 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t43 = t38 + t40 * t40 + t3;
+        let t46 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t48 = 0.8660254037844387 * t37 - 0.5 * t46;
+        let t49 = pose[1] + t48;
+        let t50 = t49 * t49;
+        let t52 = 0.2304 * (t43 - t50);
+        let t53 = t43 - 0.3136;
+        let t54 = t53 + 0.0576;
+        let t56 = t52 - t54 * t54;
+        ::overact::guard::reach(t56, "leg2")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t59 = 1.0 - 3.188775510204082 * t50;
+        ::overact::guard::reach(t59, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t59);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t61 / (0.56 * c_rod_leg2);
+        let t61 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t57 / t61;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t72 = 4.166666666666667 / s_cross_leg2;
-        let t74 = t65 * (1.7857142857142858 / c_rod_leg2);
-        let t76 = 1.0 / t52;
-        let t77 = 0.48 * t49;
-        let c_arm_leg2 = t76 * (t77 * t58 - t14 * t61);
-        let c_cross_leg2 = (t56 - (0.0576 + t66) - 0.3136 * t68) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t76 * (t14 * t58 + t77 * t61);
+        let t63 = 4.166666666666667 / s_cross_leg2;
+        let t65 = t49 * (1.7857142857142858 / c_rod_leg2);
+        let t67 = 1.0 / t52;
+        let t69 = 0.5 * t37;
+        let t71 = 0.48 * (0.8660254037844387 * t40 - t69);
+        let c_arm_leg2 = t67 * (t71 * t54 - t13 * t57);
+        let c_cross_leg2 = (-0.0576 + t53) / t61;
+        let minus_s_arm_leg2 = t67 * (t13 * t54 + t71 * t57);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
-        let t101 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t103 = t48 + 0.8660254037844387 * t101;
-        let t106 = 0.2304 * (t103 * t103 + t3);
-        let t109 = t53 + t101 * t101 + t3;
-        let t111 = t109 - 0.3136 + 0.0576;
-        let t113 = t106 - t111 * t111;
-        ::overact::guard::reach(t113, "leg3")?;
-        let t114 = ::overact::math::sqrt(t113);
-        let t117 = t63 - 0.5 * t101;
-        let t118 = t117 * t117;
-        let t120 = 1.0 - 3.188775510204082 * t118;
-        ::overact::guard::reach(t120, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        let garm_vx_leg2 = t63 * (0.8660254037844387 * t65 - 0.5 * c_armcross_leg2);
+        let t92 = t38 + t46 * t46 + t3;
+        let t93 = t48 * t48;
+        let t95 = 0.2304 * (t92 - t93);
+        let t96 = t92 - 0.3136;
+        let t97 = t96 + 0.0576;
+        let t99 = t95 - t97 * t97;
+        ::overact::guard::reach(t99, "leg3")?;
+        let t100 = ::overact::math::sqrt(t99);
+        let t102 = 1.0 - 3.188775510204082 * t93;
+        ::overact::guard::reach(t102, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t102);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t114 / (0.56 * c_rod_leg3);
+        let t104 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t100 / t104;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t124 = 4.166666666666667 / s_cross_leg3;
-        let t125 = 1.0 / t106;
-        let t126 = 0.48 * t103;
-        let minus_c_arm_leg3 = t125 * (t126 * t111 + t14 * t114);
-        let c_cross_leg3 = (t109 - (0.0576 + t118) - 0.3136 * t120)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t125 * (t126 * t114 - t14 * t111);
+        let t106 = 4.166666666666667 / s_cross_leg3;
+        let t107 = 1.0 / t95;
+        let t110 = 0.48 * (t69 + 0.8660254037844387 * t46);
+        let minus_c_arm_leg3 = t107 * (t110 * t97 + t13 * t100);
+        let c_cross_leg3 = (-0.0576 + t96) / t104;
+        let s_arm_leg3 = t107 * (t110 * t100 - t13 * t97);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t146 = t117 * (1.7857142857142858 / c_rod_leg3);
-        let garm_vx_leg3 = t124
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t146);
-        let t151 = garm_vx_leg1 * actuator_velocities[0]
+        let t126 = t48 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t106
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t126);
+        let t131 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t156 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t136 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
-        let t157 = 1.0 / t156;
+        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
+        let t137 = 1.0 / t136;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
-        let garm_vy_leg2 = t72 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t74);
-        let garm_vy_leg3 = t124
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t146);
-        let t174 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg1 = t34 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t63 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t65);
+        let garm_vy_leg3 = t106
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t126);
+        let t154 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t175 = t174 * t157;
-        let t182 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t174 * t175;
-        ::overact::guard::platform(t182, 14.869730172882846, "actuators")?;
-        let t183 = 1.0 / t182;
-        let t190 = garm_vy_leg1 * actuator_velocities[0]
+        let t155 = t154 * t137;
+        let t162 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t154 * t155;
+        ::overact::guard::platform(t162, 14.869730172882846, "actuators")?;
+        let t163 = 1.0 / t162;
+        let t170 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t151 * t175;
+            + garm_vy_leg3 * actuator_velocities[2] - t131 * t155;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t63;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t124;
-        let t208 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t106;
+        let t188 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t209 = t208 * t157;
-        let t216 = t174 * t209
+        let t189 = t188 * t137;
+        let t196 = t154 * t189
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t217 = t216 * t183;
-        let t226 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t197 = t196 * t163;
+        let t215 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t208 * t209 - t216 * t217;
-        ::overact::guard::platform(t226, 34.855350201355726, "actuators")?;
-        let t236 = (t151 * t209
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t188 * t189 - t196 * t197;
+        ::overact::guard::platform(t215, 34.855350201355726, "actuators")?;
+        let t216 = (t131 * t189
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
-                + minus_garm_vz_leg3 * actuator_velocities[2]) - t217 * t190) / t226;
-        let t238 = t183 * t190 - t217 * t236;
-        Ok([t151 * t157 - t175 * t238 + t209 * t236, t238, t236])
+                + minus_garm_vz_leg3 * actuator_velocities[2]) - t197 * t170) / t215;
+        let t218 = t163 * t170 - t197 * t216;
+        Ok([t131 * t137 - t155 * t218 + t189 * t216, t218, t216])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1439,7 +1433,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 357 operations (122 additions, 217 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 360 intermediates.
+    /// 322 operations (110 additions, 194 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 325 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1448,192 +1442,192 @@ impl Delta {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t22 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t43 = 0.24 * c_cross_leg1;
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t51 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t41 * (t49 + t51 * twist[1]);
-        let garm_vy_leg1 = t41 * t51;
+        let t44 = pose[1] * grod_vy_leg1;
+        let t46 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2]
+            + t44 * twist[1];
+        let rate_arm_leg1 = t35 * t46;
+        let t49 = t46 * (c_cross_leg1 * t34);
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t40 * t49 + t43 * garm_vy_leg1 * twist[1]
-                + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2]);
+            * (t49 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2]);
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t71 = minus_rate_cross_leg1 * minus_rate_cross_leg1
-            + rate_rod_leg1 * rate_rod_leg1;
-        let t79 = t43 * (rate_arm_leg1 * rate_arm_leg1) + t36 * t71
-            - t51
-                * (minus_rate_cross_leg1 * (pose[1] * minus_rate_cross_leg1)
-                    - pose[1] * t71);
-        let rate_dot_arm_leg1 = t41 * t79;
-        let t81 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t84 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t87 = pose[0] - 0.025 + 0.1;
-        let t88 = 0.5 * t87;
-        let t89 = 0.8660254037844387 * t84 - t88;
-        let t92 = 0.2304 * (t89 * t89 + t3);
-        let t93 = t87 * t87;
-        let t96 = t93 + t84 * t84 + t3;
-        let t98 = t96 - 0.3136 + 0.0576;
-        let t100 = t92 - t98 * t98;
-        ::overact::guard::reach(t100, "leg2")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let t103 = 0.8660254037844387 * t87;
-        let t105 = t103 + 0.5 * t84;
-        let t106 = t105 * t105;
-        let t108 = 1.0 - 3.188775510204082 * t106;
-        ::overact::guard::reach(t108, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t108);
+        let t59 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_arm_leg1 = t35
+            * (rate_arm_leg1 * t49
+                + 0.56 * c_rod_leg1
+                    * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t59)
+                + t44 * (pose[1] * t59));
+        let t67 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t69 = t0 + 0.025;
+        let t70 = t69 * t69;
+        let t72 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t75 = t70 + t72 * t72 + t3;
+        let t78 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t80 = 0.8660254037844387 * t69 - 0.5 * t78;
+        let t81 = pose[1] + t80;
+        let t82 = t81 * t81;
+        let t84 = 0.2304 * (t75 - t82);
+        let t85 = t75 - 0.3136;
+        let t86 = t85 + 0.0576;
+        let t88 = t84 - t86 * t86;
+        ::overact::guard::reach(t88, "leg2")?;
+        let t89 = ::overact::math::sqrt(t88);
+        let t91 = 1.0 - 3.188775510204082 * t82;
+        ::overact::guard::reach(t91, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t91);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t110 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t101 / t110;
+        let t93 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t89 / t93;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t112 = 1.0 / s_cross_leg2;
-        let t113 = 4.166666666666667 * t112;
-        let t114 = 1.7857142857142858 / c_rod_leg2;
-        let t115 = t105 * t114;
-        let t117 = 1.0 / t92;
-        let t118 = 0.48 * t89;
-        let c_arm_leg2 = t117 * (t118 * t98 - t14 * t101);
-        let c_cross_leg2 = (t96 - (0.0576 + t106) - 0.3136 * t108)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t117 * (t14 * t98 + t118 * t101);
+        let t95 = 1.0 / s_cross_leg2;
+        let t96 = 4.166666666666667 * t95;
+        let t97 = 1.7857142857142858 / c_rod_leg2;
+        let t98 = t81 * t97;
+        let t100 = 1.0 / t84;
+        let t102 = 0.5 * t69;
+        let t104 = 0.48 * (0.8660254037844387 * t72 - t102);
+        let c_arm_leg2 = t100 * (t104 * t86 - t13 * t89);
+        let c_cross_leg2 = (-0.0576 + t85) / t93;
+        let minus_s_arm_leg2 = t100 * (t13 * t86 + t104 * t89);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t136 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t113 * (0.8660254037844387 * t115 - t136);
-        let t139 = 0.24 * c_cross_leg2;
-        let t140 = 0.8660254037844387 * c_armcross_leg2;
+        let t118 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t96 * (0.8660254037844387 * t98 - t118);
+        let t122 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t148 = t140 * twist[1] - t136 * twist[0] - s_armcross_leg2 * twist[2];
-        let t149 = 0.8660254037844387 * twist[0];
-        let t150 = 0.5 * twist[1];
-        let t151 = t149 + t150;
-        let rate_arm_leg2 = t113 * (t148 + t115 * t151);
-        let minus_rate_rod_leg2 = t114 * t151;
-        let t168 = 0.5 * s_armcross_leg2 * twist[0]
+        let t130 = t122 * twist[1] - t118 * twist[0] - s_armcross_leg2 * twist[2];
+        let t131 = 0.8660254037844387 * twist[0];
+        let t132 = 0.5 * twist[1];
+        let t133 = t131 + t132;
+        let t134 = t98 * t133;
+        let rate_arm_leg2 = t96 * (t130 + t134);
+        let minus_rate_rod_leg2 = t97 * t133;
+        let t141 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t149 = c_cross_leg2 * t95;
+        let t153 = 0.5 * s_armcross_leg2 * twist[0]
             - 0.8660254037844387 * s_armcross_leg2 * twist[1]
-            - c_armcross_leg2 * twist[2] - c_cross_leg2 * t112 * t148;
-        let rate_cross_leg2 = t114 * (t168 - t139 * (t113 * t115) * t151);
-        let t175 = minus_rate_rod_leg2 * minus_rate_rod_leg2
-            + rate_cross_leg2 * rate_cross_leg2;
-        let t183 = t139 * (rate_arm_leg2 * rate_arm_leg2) + t110 * t175
-            + t115 * (t105 * t175 - rate_cross_leg2 * (t105 * rate_cross_leg2));
-        let rate_dot_arm_leg2 = t113 * t183;
-        let t185 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t189 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t191 = t88 + 0.8660254037844387 * t189;
-        let t194 = 0.2304 * (t191 * t191 + t3);
-        let t197 = t93 + t189 * t189 + t3;
-        let t199 = t197 - 0.3136 + 0.0576;
-        let t201 = t194 - t199 * t199;
-        ::overact::guard::reach(t201, "leg3")?;
-        let t202 = ::overact::math::sqrt(t201);
-        let t205 = t103 - 0.5 * t189;
-        let t206 = t205 * t205;
-        let t208 = 1.0 - 3.188775510204082 * t206;
-        ::overact::guard::reach(t208, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t208);
+            - c_armcross_leg2 * twist[2] - t149 * t130 - t134 * t149;
+        let rate_cross_leg2 = t97 * t153;
+        let t161 = 0.24 * c_cross_leg2 * (rate_arm_leg2 * rate_arm_leg2)
+            + 0.56 * c_rod_leg2 * (t141 + rate_cross_leg2 * rate_cross_leg2)
+            + t98 * (t81 * t141);
+        let rate_dot_arm_leg2 = t96 * t161;
+        let t163 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t168 = t70 + t78 * t78 + t3;
+        let t169 = t80 * t80;
+        let t171 = 0.2304 * (t168 - t169);
+        let t172 = t168 - 0.3136;
+        let t173 = t172 + 0.0576;
+        let t175 = t171 - t173 * t173;
+        ::overact::guard::reach(t175, "leg3")?;
+        let t176 = ::overact::math::sqrt(t175);
+        let t178 = 1.0 - 3.188775510204082 * t169;
+        ::overact::guard::reach(t178, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t178);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t210 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t202 / t210;
+        let t180 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t176 / t180;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t212 = 1.0 / s_cross_leg3;
-        let t213 = 4.166666666666667 * t212;
-        let t214 = 1.0 / t194;
-        let t215 = 0.48 * t191;
-        let minus_c_arm_leg3 = t214 * (t215 * t199 + t14 * t202);
-        let c_cross_leg3 = (t197 - (0.0576 + t206) - 0.3136 * t208)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t214 * (t215 * t202 - t14 * t199);
+        let t182 = 1.0 / s_cross_leg3;
+        let t183 = 4.166666666666667 * t182;
+        let t184 = 1.0 / t171;
+        let t187 = 0.48 * (t102 + 0.8660254037844387 * t78);
+        let minus_c_arm_leg3 = t184 * (t187 * t173 + t13 * t176);
+        let c_cross_leg3 = (-0.0576 + t172) / t180;
+        let s_arm_leg3 = t184 * (t187 * t176 - t13 * t173);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t233 = 0.5 * minus_c_armcross_leg3;
-        let t234 = 1.7857142857142858 / c_rod_leg3;
-        let t235 = t205 * t234;
-        let garm_vx_leg3 = t213 * (t233 + 0.8660254037844387 * t235);
-        let t239 = 0.24 * c_cross_leg3;
-        let t241 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t201 = 0.5 * minus_c_armcross_leg3;
+        let t202 = 1.7857142857142858 / c_rod_leg3;
+        let t203 = t80 * t202;
+        let garm_vx_leg3 = t183 * (t201 + 0.8660254037844387 * t203);
+        let t209 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t248 = t233 * twist[0] + t241 * twist[1] - s_armcross_leg3 * twist[2];
-        let t249 = t149 - t150;
-        let rate_arm_leg3 = t213 * (t248 + t235 * t249);
-        let rate_rod_leg3 = t234 * t249;
-        let t266 = 0.5 * s_armcross_leg3 * twist[0]
+        let t216 = t201 * twist[0] + t209 * twist[1] - s_armcross_leg3 * twist[2];
+        let t217 = t131 - t132;
+        let t218 = t203 * t217;
+        let rate_arm_leg3 = t183 * (t216 + t218);
+        let rate_rod_leg3 = t202 * t217;
+        let t225 = rate_rod_leg3 * rate_rod_leg3;
+        let t233 = c_cross_leg3 * t182;
+        let t237 = 0.5 * s_armcross_leg3 * twist[0]
             + 0.8660254037844387 * s_armcross_leg3 * twist[1]
-            + minus_c_armcross_leg3 * twist[2] - c_cross_leg3 * t212 * t248;
-        let rate_cross_leg3 = t234 * (t266 - t239 * (t213 * t235) * t249);
-        let t273 = rate_rod_leg3 * rate_rod_leg3 + rate_cross_leg3 * rate_cross_leg3;
-        let t281 = t239 * (rate_arm_leg3 * rate_arm_leg3) + t210 * t273
-            - t235 * (rate_cross_leg3 * (t205 * rate_cross_leg3) - t205 * t273);
-        let rate_dot_arm_leg3 = t213 * t281;
-        let t283 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t285 = garm_vx_leg1 * t81 + garm_vx_leg2 * t185 + garm_vx_leg3 * t283;
-        let t290 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + minus_c_armcross_leg3 * twist[2] - t233 * t216 - t218 * t233;
+        let rate_cross_leg3 = t202 * t237;
+        let t245 = 0.24 * c_cross_leg3 * (rate_arm_leg3 * rate_arm_leg3)
+            + 0.56 * c_rod_leg3 * (t225 + rate_cross_leg3 * rate_cross_leg3)
+            + t203 * (t80 * t225);
+        let rate_dot_arm_leg3 = t183 * t245;
+        let t247 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t249 = garm_vx_leg1 * t67 + garm_vx_leg2 * t163 + garm_vx_leg3 * t247;
+        let t254 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t290, 14.869730172882841, "actuators")?;
-        let t291 = 1.0 / t290;
-        let garm_vy_leg2 = t113 * (t140 + 0.5 * t115);
-        let garm_vy_leg3 = t213 * (t241 - 0.5 * t235);
-        let t303 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t254, 14.869730172882841, "actuators")?;
+        let t255 = 1.0 / t254;
+        let garm_vy_leg1 = t35 * t44;
+        let garm_vy_leg2 = t96 * (t122 + 0.5 * t98);
+        let garm_vy_leg3 = t183 * (t209 - 0.5 * t203);
+        let t268 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t304 = t303 * t291;
-        let t311 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t303 * t304;
-        ::overact::guard::platform(t311, 14.869730172882846, "actuators")?;
-        let t312 = 1.0 / t311;
-        let t319 = garm_vy_leg1 * t81 + garm_vy_leg2 * t185 + garm_vy_leg3 * t283
-            - t285 * t304;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t113;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t213;
-        let t328 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t269 = t268 * t255;
+        let t276 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t268 * t269;
+        ::overact::guard::platform(t276, 14.869730172882846, "actuators")?;
+        let t277 = 1.0 / t276;
+        let t284 = garm_vy_leg1 * t67 + garm_vy_leg2 * t163 + garm_vy_leg3 * t247
+            - t249 * t269;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t96;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t183;
+        let t293 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t329 = t328 * t291;
-        let t336 = t303 * t329
+        let t294 = t293 * t255;
+        let t301 = t268 * t294
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t337 = t336 * t312;
-        let t346 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t302 = t301 * t277;
+        let t320 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t328 * t329 - t336 * t337;
-        ::overact::guard::platform(t346, 34.855350201355726, "actuators")?;
-        let t356 = (t285 * t329
-            - (minus_garm_vz_leg1 * t81 + minus_garm_vz_leg2 * t185
-                + minus_garm_vz_leg3 * t283) - t337 * t319) / t346;
-        let t358 = t312 * t319 - t337 * t356;
-        Ok([t285 * t291 - t304 * t358 + t329 * t356, t358, t356])
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t293 * t294 - t301 * t302;
+        ::overact::guard::platform(t320, 34.855350201355726, "actuators")?;
+        let t321 = (t249 * t294
+            - (minus_garm_vz_leg1 * t67 + minus_garm_vz_leg2 * t163
+                + minus_garm_vz_leg3 * t247) - t302 * t284) / t320;
+        let t323 = t277 * t284 - t302 * t321;
+        Ok([t249 * t255 - t269 * t323 + t294 * t321, t323, t321])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1645,7 +1639,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 846 operations (271 additions, 560 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 720 intermediates.
+    /// 747 operations (231 additions, 501 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 622 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1654,513 +1648,437 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t9 = pose[1] * pose[1] + -0.3136;
+        let t10 = t4 + t9;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t9));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 0.24 * c_cross_leg1;
-        let t52 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
-        let t53 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t53;
-        let t55 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t41 * (t52 + t55 * twist[1]);
-        let t59 = rate_arm_leg1 * rate_arm_leg1;
-        let t61 = c_cross_leg1 * t40;
-        let garm_vy_leg1 = t41 * t55;
-        let t64 = t49 * garm_vy_leg1;
-        let t70 = t61 * t52 + t64 * twist[1] + s_armcross_leg1 * twist[0]
+        let t43 = 0.24 * c_cross_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t48 = pose[1] * grod_vy_leg1;
+        let t49 = t48 * twist[1];
+        let rate_arm_leg1 = t35
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t49);
+        let t52 = rate_arm_leg1 * rate_arm_leg1;
+        let t54 = 0.56 * c_rod_leg1;
+        let t59 = t43 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t70;
-        let t72 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t59;
+        let t61 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t74 = rate_rod_leg1 * rate_rod_leg1;
-        let t75 = t72 + t74;
-        let t78 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t49 * t59 + t36 * t75;
-        let t79 = pose[1] * minus_rate_cross_leg1;
-        let t80 = minus_rate_cross_leg1 * t79;
-        let t83 = acceleration[1] - (t80 - pose[1] * t75);
-        let rate_dot_arm_leg1 = t41 * (t78 + t55 * t83);
-        let t87 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let t88 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
-        let t90 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t91 = 9.81 * c_arm_leg1;
-        let t95 = 9.81 * minus_s_arm_leg1;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t61 + s_armcross_leg1);
+        let t63 = rate_rod_leg1 * rate_rod_leg1;
+        let t69 = acceleration[1] + pose[1] * t63;
+        let t71 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t43 * t52 + t54 * (t61 + t63) + t48 * t69;
+        let rate_dot_arm_leg1 = t35 * t71;
+        let t73 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t35 * t48;
+        let t75 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let t77 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t78 = 9.81 * c_arm_leg1;
+        let t82 = 9.81 * minus_s_arm_leg1;
+        let t92 = t34 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t92;
+        let t95 = rate_rod_leg1 * (1.7857142857142858 * t59);
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t118 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t122 = t61 * t78 + t64 * t83 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t59 + t118
-            + t118;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t122;
-        let t124 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t126 = rate_rod_leg1 * (1.7857142857142858 * t70);
-        let t127 = t124 + t126;
-        let t130 = c_rod_leg1 * (1.7857142857142858 * t118);
-        let t131 = s_rod_leg1 * t127 + t130;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t64;
-        let t135 = 3.188775510204082 * t80;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t61);
-        let t141 = t118 - t122;
-        let t145 = t126 + t127;
-        let t147 = 3.188775510204082 * (pose[1] * (t118 + t141)) - c_rod_leg1 * t145;
-        let t149 = t79 * t79;
-        let t158 = 3.188775510204082 * (t70 * t79);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t83;
-        let t162 = 3.188775510204082 * t149;
-        let t165 = s_rod_leg1 * (t158 + rate_dot_rod_leg1) + c_rod_leg1 * (t74 - t162);
-        let t173 = t130 + c_rod_leg1 * (1.7857142857142858 * t141);
-        let t174 = minus_gcross_vx_leg1 * t173;
-        let t176 = t135 - minus_gcross_vy_leg1 * t173;
-        let t177 = minus_gcross_vz_leg1 * t173;
-        let t178 = 1.7857142857142858 * acceleration[1];
-        let t184 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t185 = 1.7857142857142858 * acceleration[0];
-        let t187 = 0.24 * rate_dot_arm_leg1 - t91;
-        let t188 = 0.24 * t187;
-        let t189 = garm_vx_leg1 * t188;
-        let t195 = garm_vy_leg1 * t188;
-        let t203 = acceleration[2] + 9.81;
-        let t204 = 1.7857142857142858 * t203;
-        let t205 = minus_garm_vz_leg1 * t188;
-        let t215 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t220 = 0.8928571428571429 * t17 * (t158 - rate_dot_rod_leg1)
-            + t215 * (t162 + t74) + t49 * t145;
-        let t224 = t95 - 0.24 * t59;
-        let t227 = s_rod_leg1 * (c_cross_leg1 * t187 - s_cross_leg1 * t224);
-        let t235 = c_cross_leg1 * t224 + s_cross_leg1 * t187;
-        let t246 = t49 * t72 - (1.594387755102041 * (t17 * t122) + t124 * t215);
-        let t257 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t260 = pose[0] - 0.025 + 0.1;
-        let t261 = 0.5 * t260;
-        let t262 = 0.8660254037844387 * t257 - t261;
-        let t265 = 0.2304 * (t262 * t262 + t3);
-        let t266 = t260 * t260;
-        let t269 = t266 + t257 * t257 + t3;
-        let t271 = t269 - 0.3136 + 0.0576;
-        let t273 = t265 - t271 * t271;
-        ::overact::guard::reach(t273, "leg2")?;
-        let t274 = ::overact::math::sqrt(t273);
-        let t276 = 0.8660254037844387 * t260;
-        let t278 = t276 + 0.5 * t257;
-        let t279 = t278 * t278;
-        let t281 = 1.0 - 3.188775510204082 * t279;
-        ::overact::guard::reach(t281, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t281);
+        let t97 = 0.24 * t52;
+        let t99 = 0.24 * rate_dot_arm_leg1;
+        let t105 = s_cross_leg1 * t97 + c_cross_leg1 * t99
+            + s_armcross_leg1 * acceleration[0] + c_armcross_leg1 * acceleration[2];
+        let t106 = t49 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t105 + t106 + t106);
+        let t110 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t112 = t95 + t110 + t95;
+        let t113 = c_rod_leg1 * t112;
+        let t114 = t48 * t113;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t43 * garm_vy_leg1);
+        let t119 = t61 * s_rod_leg1;
+        let t120 = 1.7857142857142858 * t119;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t92;
+        let t124 = t114 - minus_rate_dot_cross_leg1;
+        let t126 = t48 * t124 - t113;
+        let t128 = pose[1] * t120;
+        let t129 = t63 - t128;
+        let t130 = t61 + t129;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t69;
+        let t140 = s_rod_leg1 * (t54 * t120 + rate_dot_rod_leg1);
+        let t142 = t140 + c_rod_leg1 * t129;
+        let t152 = 1.7857142857142858 * acceleration[1];
+        let t163 = s_cross_leg1 * 0.24;
+        let t166 = 0.42857142857142855 * (c_cross_leg1 * t105)
+            + 0.8928571428571429 * t16 * t130 + t140 * t163;
+        let t168 = t99 - t78;
+        let t170 = t82 - t97;
+        let t172 = c_cross_leg1 * t168 - s_cross_leg1 * t170;
+        let t173 = c_rod_leg1 * t172;
+        let t177 = 0.24 * t168;
+        let t178 = garm_vy_leg1 * t177;
+        let t187 = t43 * t112 - t163 * (t152 - t119);
+        let t189 = s_rod_leg1 * t172;
+        let t197 = c_cross_leg1 * t170 + s_cross_leg1 * t168;
+        let t205 = t43 * t61 - minus_rate_dot_cross_leg1 * t163;
+        let t217 = t0 + 0.025;
+        let t218 = t217 * t217;
+        let t220 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t224 = t218 + t220 * t220 + t3 + -0.3136;
+        let t227 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t229 = 0.8660254037844387 * t217 - 0.5 * t227;
+        let t230 = pose[1] + t229;
+        let t232 = 0.3136 - t230 * t230;
+        let t234 = 0.2304 * (t224 + t232);
+        let t235 = t224 + 0.0576;
+        let t237 = t234 - t235 * t235;
+        ::overact::guard::reach(t237, "leg2")?;
+        let t238 = ::overact::math::sqrt(t237);
+        let t239 = 3.188775510204082 * t232;
+        ::overact::guard::reach(t239, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t239);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t283 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t274 / t283;
+        let t241 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t238 / t241;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t285 = 1.0 / s_cross_leg2;
-        let t286 = 4.166666666666667 * t285;
-        let t287 = 1.0 / c_rod_leg2;
-        let t288 = 1.7857142857142858 * t287;
-        let t289 = t278 * t288;
-        let t291 = 1.0 / t265;
-        let t292 = 0.48 * t262;
-        let c_arm_leg2 = t291 * (t292 * t271 - t14 * t274);
-        let c_cross_leg2 = (t269 - (0.0576 + t279) - 0.3136 * t281)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t291 * (t14 * t271 + t292 * t274);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t310 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t286 * (0.8660254037844387 * t289 - t310);
-        let t313 = 0.8660254037844387 * c_armcross_leg2;
+        let t243 = 1.0 / s_cross_leg2;
+        let t244 = 4.166666666666667 * t243;
+        let t245 = 1.0 / c_rod_leg2;
+        let t246 = 1.7857142857142858 * t245;
+        let t247 = t230 * t246;
+        let t249 = 1.0 / t234;
+        let t252 = 0.5 * t217;
+        let t254 = 0.48 * (0.8660254037844387 * t220 - t252);
+        let minus_s_arm_leg2 = t249 * (t13 * t235 + t254 * t238);
+        let t258 = t243 * minus_s_arm_leg2;
+        let c_arm_leg2 = t249 * (t254 * t235 - t13 * t238);
+        let c_cross_leg2 = (-0.0576 + t224) / t241;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t322 = 0.24 * c_cross_leg2;
-        let t327 = t313 * twist[1] - t310 * twist[0] - s_armcross_leg2 * twist[2];
-        let t328 = 0.8660254037844387 * twist[0];
-        let t329 = 0.5 * twist[1];
-        let t330 = t328 + t329;
-        let rate_arm_leg2 = t286 * (t327 + t289 * t330);
-        let t334 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t288 * t330;
-        let t337 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t338 = 0.5 * s_armcross_leg2;
-        let t340 = 0.8660254037844387 * s_armcross_leg2;
-        let t345 = c_cross_leg2 * t285;
-        let t349 = t322 * (t286 * t289);
-        let t351 = t338 * twist[0] - t340 * twist[1] - c_armcross_leg2 * twist[2]
-            - t345 * t327 - t349 * t330;
-        let rate_cross_leg2 = t288 * t351;
-        let t353 = rate_cross_leg2 * rate_cross_leg2;
-        let t354 = t337 + t353;
-        let t357 = t313 * acceleration[1] - t310 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t322 * t334 + t283 * t354;
-        let t358 = 0.8660254037844387 * acceleration[0];
-        let t359 = 0.5 * acceleration[1];
-        let t360 = t358 + t359;
-        let t362 = t278 * rate_cross_leg2;
-        let t363 = rate_cross_leg2 * t362;
-        let t365 = t360 + t278 * t354 - t363;
-        let rate_dot_arm_leg2 = t286 * (t357 + t289 * t365);
-        let t369 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t286 * (t313 + 0.5 * t289);
-        let t373 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t286;
-        let t375 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t376 = 9.81 * c_arm_leg2;
-        let t380 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t288 * (t310 * t345 + t338 - 0.8660254037844387 * t349);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t278;
-        let t404 = t278 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t407 = t338 * acceleration[0] - t340 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2]
-            - (0.24 * s_cross_leg2 * t334 - t404 - t404);
-        let t411 = t407 - t345 * t357 - t349 * t365;
-        let rate_dot_cross_leg2 = t288 * t411;
-        let t413 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t415 = minus_rate_rod_leg2 * (1.7857142857142858 * t351);
-        let t416 = t413 + t415;
-        let t419 = c_rod_leg2 * (1.7857142857142858 * t404);
-        let t420 = minus_s_rod_leg2 * t416 + t419;
-        let t422 = 2.76156059880242 * t363;
-        let minus_gcross_vy_leg2 = t288 * (t313 * t345 + t340 + 0.5 * t349);
-        let t430 = 1.594387755102041 * t363;
-        let gcross_vz_leg2 = t288 * (s_armcross_leg2 * t345 - c_armcross_leg2);
-        let t436 = t411 - t404;
-        let t440 = t415 + t416;
-        let t442 = 3.188775510204082 * (t278 * (t404 - t436)) - c_rod_leg2 * t440;
-        let t444 = t362 * t362;
-        let t447 = t287 * (t444 - t351 * t351);
-        let t455 = 3.188775510204082 * (t351 * t362);
-        let minus_rate_dot_rod_leg2 = t288 * t365;
-        let t459 = 3.188775510204082 * t444;
-        let t462 = minus_s_rod_leg2 * (t455 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t337 - t459);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t287;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t287;
-        let t474 = c_rod_leg2 * (1.7857142857142858 * t436) - t419;
-        let t476 = gcross_vx_leg2 * t474 + t422;
-        let t478 = t430 - minus_gcross_vy_leg2 * t474;
-        let t479 = gcross_vz_leg2 * t474;
-        let t480 = 1.7857142857142858 * t360;
-        let t488 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t489 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
-        let t491 = 0.24 * rate_dot_arm_leg2 - t376;
-        let t492 = 0.24 * t491;
-        let t493 = garm_vx_leg2 * t492;
-        let t501 = garm_vy_leg2 * t492;
-        let t510 = minus_garm_vz_leg2 * t492;
-        let t519 = 0.42857142857142855 * (t278 * s_cross_leg2);
-        let t524 = 0.8928571428571429 * t274 * (minus_rate_dot_rod_leg2 - t455)
-            - t519 * (t459 + t337) + t322 * t440;
-        let t528 = t380 - 0.24 * t334;
-        let t531 = minus_s_rod_leg2 * (c_cross_leg2 * t491 - s_cross_leg2 * t528);
-        let t536 = c_cross_leg2 * t528 + s_cross_leg2 * t491;
-        let t553 = 1.594387755102041 * (t274 * t411) + t413 * t519 + t322 * t353;
-        let t564 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t566 = t261 + 0.8660254037844387 * t564;
-        let t569 = 0.2304 * (t566 * t566 + t3);
-        let t572 = t266 + t564 * t564 + t3;
-        let t574 = t572 - 0.3136 + 0.0576;
-        let t576 = t569 - t574 * t574;
-        ::overact::guard::reach(t576, "leg3")?;
-        let t577 = ::overact::math::sqrt(t576);
-        let t580 = t276 - 0.5 * t564;
-        let t581 = t580 * t580;
-        let t583 = 1.0 - 3.188775510204082 * t581;
-        ::overact::guard::reach(t583, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t583);
+        let t268 = c_cross_leg2 * t243;
+        let c_armcross_leg2 = t258 + s_armcross_leg2 * t268;
+        let t271 = 0.5 * c_armcross_leg2;
+        let t272 = 0.8660254037844387 * t247 - t271;
+        let garm_vx_leg2 = t244 * t272;
+        let t274 = 0.8660254037844387 * c_armcross_leg2;
+        let t280 = 0.24 * c_cross_leg2;
+        let t286 = 0.8660254037844387 * twist[0];
+        let t287 = 0.5 * twist[1];
+        let t288 = t286 + t287;
+        let t289 = t247 * t288;
+        let rate_arm_leg2 = t244
+            * (t274 * twist[1] - t271 * twist[0] - s_armcross_leg2 * twist[2] + t289);
+        let t292 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t246 * t288;
+        let t296 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t297 = 0.5 * s_armcross_leg2;
+        let t299 = 0.8660254037844387 * s_armcross_leg2;
+        let t305 = t297 * twist[0] - t299 * twist[1] - c_armcross_leg2 * twist[2]
+            - t280 * rate_arm_leg2;
+        let rate_cross_leg2 = t246 * t305;
+        let t307 = rate_cross_leg2 * rate_cross_leg2;
+        let t311 = t274 * acceleration[1] - t271 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t280 * t292
+            + 0.56 * c_rod_leg2 * (t296 + t307);
+        let t312 = 0.8660254037844387 * acceleration[0];
+        let t313 = 0.5 * acceleration[1];
+        let t314 = t312 + t313;
+        let t316 = t314 + t230 * t296;
+        let rate_dot_arm_leg2 = t244 * (t311 + t247 * t316);
+        let t320 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t244 * (t274 + 0.5 * t247);
+        let t324 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t244;
+        let t326 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t327 = 9.81 * c_arm_leg2;
+        let t331 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t246 * (t297 - t272 * t268);
+        let t345 = minus_rate_rod_leg2 * (1.7857142857142858 * t305);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t230;
+        let t352 = 0.24 * t292;
+        let t354 = t289 * rate_cross_leg2;
+        let t358 = 0.24 * rate_dot_arm_leg2;
+        let t360 = t297 * acceleration[0] - t299 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t352 - (t354 + t354))
+            - c_cross_leg2 * t358;
+        let rate_dot_cross_leg2 = t246 * t360;
+        let t362 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t364 = t345 + t362 + t345;
+        let t365 = c_rod_leg2 * t364;
+        let t366 = t247 * t365;
+        let t368 = t230 * rate_cross_leg2;
+        let t369 = rate_cross_leg2 * t368;
+        let t370 = 2.76156059880242 * t369;
+        let minus_gcross_vy_leg2 = t246 * (t299 + t280 * garm_vy_leg2);
+        let t376 = 1.594387755102041 * t369;
+        let minus_gcross_vz_leg2 = t246 * t258;
+        let t380 = rate_dot_cross_leg2 - t366;
+        let t382 = t247 * t380 + t365;
+        let t384 = t368 * t368;
+        let t385 = t305 * t305;
+        let t387 = t245 * (t384 - t385);
+        let t394 = 3.188775510204082 * t385;
+        let t395 = t247 * t394;
+        let minus_rate_dot_rod_leg2 = t246 * t316;
+        let t397 = t395 + minus_rate_dot_rod_leg2;
+        let t399 = 3.188775510204082 * t384;
+        let t402 = minus_s_rod_leg2 * t397 + c_rod_leg2 * (t296 - t399);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t245;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t245;
+        let t417 = 1.7857142857142858 * t314;
+        let t427 = t358 - t327;
+        let t429 = t331 - t352;
+        let t431 = c_cross_leg2 * t427 - s_cross_leg2 * t429;
+        let t432 = c_rod_leg2 * t431;
+        let t434 = 0.8928571428571429 * t238;
+        let t437 = t247 * t434;
+        let t442 = t434 * (t394 + t296) + t437 * t397 - t280 * (t245 * t380);
+        let t447 = c_cross_leg2 * t429 + s_cross_leg2 * t427;
+        let t448 = minus_s_rod_leg2 * t447;
+        let t465 = t434 * (minus_rate_dot_rod_leg2 - t395) - t437 * (t399 + t296)
+            + t280 * t364;
+        let t467 = minus_s_rod_leg2 * t431;
+        let t483 = rate_dot_cross_leg2 * (0.24 * s_cross_leg2) + t280 * t307;
+        let t493 = 0.24 * t427;
+        let t500 = t218 + t227 * t227 + t3 + -0.3136;
+        let t502 = 0.3136 - t229 * t229;
+        let t504 = 0.2304 * (t500 + t502);
+        let t505 = t500 + 0.0576;
+        let t507 = t504 - t505 * t505;
+        ::overact::guard::reach(t507, "leg3")?;
+        let t508 = ::overact::math::sqrt(t507);
+        let t509 = 3.188775510204082 * t502;
+        ::overact::guard::reach(t509, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t509);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t585 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t577 / t585;
+        let t511 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t508 / t511;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t587 = 1.0 / s_cross_leg3;
-        let t588 = 4.166666666666667 * t587;
-        let t589 = 1.0 / t569;
-        let t590 = 0.48 * t566;
-        let minus_c_arm_leg3 = t589 * (t590 * t574 + t14 * t577);
-        let c_cross_leg3 = (t572 - (0.0576 + t581) - 0.3136 * t583)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t589 * (t590 * t577 - t14 * t574);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t608 = 0.5 * minus_c_armcross_leg3;
-        let t609 = 1.0 / c_rod_leg3;
-        let t610 = 1.7857142857142858 * t609;
-        let t611 = t580 * t610;
-        let garm_vx_leg3 = t588 * (t608 + 0.8660254037844387 * t611);
-        let t616 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t513 = 1.0 / s_cross_leg3;
+        let t514 = 4.166666666666667 * t513;
+        let t515 = 1.0 / t504;
+        let t518 = 0.48 * (t252 + 0.8660254037844387 * t227);
+        let s_arm_leg3 = t515 * (t518 * t508 - t13 * t505);
+        let t523 = t513 * s_arm_leg3;
+        let c_cross_leg3 = (-0.0576 + t500) / t511;
+        let minus_c_arm_leg3 = t515 * (t518 * t505 + t13 * t508);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t624 = 0.24 * c_cross_leg3;
-        let t629 = t608 * twist[0] + t616 * twist[1] - s_armcross_leg3 * twist[2];
-        let t630 = t328 - t329;
-        let rate_arm_leg3 = t588 * (t629 + t611 * t630);
-        let t634 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t610 * t630;
-        let t637 = rate_rod_leg3 * rate_rod_leg3;
-        let t638 = 0.5 * s_armcross_leg3;
-        let t640 = 0.8660254037844387 * s_armcross_leg3;
-        let t645 = c_cross_leg3 * t587;
-        let t649 = t624 * (t588 * t611);
-        let t651 = t638 * twist[0] + t640 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t645 * t629 - t649 * t630;
-        let rate_cross_leg3 = t610 * t651;
-        let t653 = rate_cross_leg3 * rate_cross_leg3;
-        let t654 = t637 + t653;
-        let t657 = t608 * acceleration[0] + t616 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t624 * t634 + t585 * t654;
-        let t658 = t358 - t359;
-        let t659 = t580 * rate_cross_leg3;
-        let t660 = rate_cross_leg3 * t659;
-        let t663 = t658 - (t660 - t580 * t654);
-        let rate_dot_arm_leg3 = t588 * (t657 + t611 * t663);
-        let t667 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t588 * (t616 - 0.5 * t611);
-        let t671 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t588;
-        let t673 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t674 = 9.81 * minus_c_arm_leg3;
-        let t678 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t610 * (t638 - t608 * t645 - 0.8660254037844387 * t649);
-        let s_rod_leg3 = 1.7857142857142858 * t580;
-        let t702 = t580 * (rate_cross_leg3 * rate_rod_leg3);
-        let t705 = t638 * acceleration[0] + t640 * acceleration[1]
+        let t533 = c_cross_leg3 * t513;
+        let minus_c_armcross_leg3 = t523 - s_armcross_leg3 * t533;
+        let t536 = 0.5 * minus_c_armcross_leg3;
+        let t537 = 1.0 / c_rod_leg3;
+        let t538 = 1.7857142857142858 * t537;
+        let t539 = t229 * t538;
+        let t541 = t536 + 0.8660254037844387 * t539;
+        let garm_vx_leg3 = t514 * t541;
+        let t544 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t549 = 0.24 * c_cross_leg3;
+        let t555 = t286 - t287;
+        let t556 = t539 * t555;
+        let rate_arm_leg3 = t514
+            * (t536 * twist[0] + t544 * twist[1] - s_armcross_leg3 * twist[2] + t556);
+        let t559 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t538 * t555;
+        let t563 = rate_rod_leg3 * rate_rod_leg3;
+        let t564 = 0.5 * s_armcross_leg3;
+        let t566 = 0.8660254037844387 * s_armcross_leg3;
+        let t572 = t564 * twist[0] + t566 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t549 * rate_arm_leg3;
+        let rate_cross_leg3 = t538 * t572;
+        let t574 = rate_cross_leg3 * rate_cross_leg3;
+        let t578 = t536 * acceleration[0] + t544 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t549 * t559
+            + 0.56 * c_rod_leg3 * (t563 + t574);
+        let t579 = t312 - t313;
+        let t581 = t579 + t229 * t563;
+        let rate_dot_arm_leg3 = t514 * (t578 + t539 * t581);
+        let t585 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t514 * (t544 - 0.5 * t539);
+        let t589 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t514;
+        let t591 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t592 = 9.81 * minus_c_arm_leg3;
+        let t596 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t538 * (t564 - t541 * t533);
+        let t610 = rate_rod_leg3 * (1.7857142857142858 * t572);
+        let s_rod_leg3 = 1.7857142857142858 * t229;
+        let t617 = 0.24 * t559;
+        let t619 = t556 * rate_cross_leg3;
+        let t623 = 0.24 * rate_dot_arm_leg3;
+        let t625 = t564 * acceleration[0] + t566 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (0.24 * s_cross_leg3 * t634 - t702 - t702);
-        let t709 = t705 - t645 * t657 - t649 * t663;
-        let rate_dot_cross_leg3 = t610 * t709;
-        let t711 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t713 = rate_rod_leg3 * (1.7857142857142858 * t651);
-        let t714 = t711 + t713;
-        let t717 = c_rod_leg3 * (1.7857142857142858 * t702);
-        let t718 = s_rod_leg3 * t714 + t717;
-        let t720 = 2.76156059880242 * t660;
-        let gcross_vy_leg3 = t610 * (t640 - t616 * t645 + 0.5 * t649);
-        let t728 = 1.594387755102041 * t660;
-        let gcross_vz_leg3 = t610 * (s_armcross_leg3 * t645 + minus_c_armcross_leg3);
-        let t734 = t713 + t714;
-        let t736 = t709 - t702;
-        let t740 = c_rod_leg3 * t734 - 3.188775510204082 * (t580 * (t702 - t736));
-        let t742 = t659 * t659;
-        let t745 = t609 * (t742 - t651 * t651);
-        let t753 = 3.188775510204082 * (t651 * t659);
-        let rate_dot_rod_leg3 = t610 * t663;
-        let t757 = 3.188775510204082 * t742;
-        let t760 = s_rod_leg3 * (t753 + rate_dot_rod_leg3) + c_rod_leg3 * (t637 - t757);
-        let grod_vx_leg3 = 1.5464739353293548 * t609;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t609;
-        let t772 = c_rod_leg3 * (1.7857142857142858 * t736) - t717;
-        let t774 = gcross_vx_leg3 * t772 + t720;
-        let t776 = gcross_vy_leg3 * t772 - t728;
-        let t777 = gcross_vz_leg3 * t772;
-        let t778 = 1.7857142857142858 * t658;
-        let t786 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t787 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t789 = t674 + 0.24 * rate_dot_arm_leg3;
-        let t790 = 0.24 * t789;
-        let t791 = garm_vx_leg3 * t790;
-        let t799 = garm_vy_leg3 * t790;
-        let t808 = minus_garm_vz_leg3 * t790;
-        let t817 = 0.42857142857142855 * (t580 * s_cross_leg3);
-        let t822 = 0.8928571428571429 * t577 * (t753 - rate_dot_rod_leg3)
-            + t817 * (t757 + t637) - t624 * t734;
-        let t825 = t678 + 0.24 * t634;
-        let t829 = s_rod_leg3 * (s_cross_leg3 * t825 + c_cross_leg3 * t789);
-        let t834 = s_cross_leg3 * t789 - c_cross_leg3 * t825;
-        let t851 = 1.594387755102041 * (t577 * t709) + t711 * t817 + t624 * t653;
+            - (s_cross_leg3 * t617 - (t619 + t619)) - c_cross_leg3 * t623;
+        let rate_dot_cross_leg3 = t538 * t625;
+        let t627 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t629 = t610 + t627 + t610;
+        let t630 = c_rod_leg3 * t629;
+        let t631 = t539 * t630;
+        let t633 = t229 * rate_cross_leg3;
+        let t634 = rate_cross_leg3 * t633;
+        let t635 = 2.76156059880242 * t634;
+        let gcross_vy_leg3 = t538 * (t566 - t549 * garm_vy_leg3);
+        let t641 = 1.594387755102041 * t634;
+        let gcross_vz_leg3 = t538 * t523;
+        let t645 = rate_dot_cross_leg3 - t631;
+        let t647 = t630 + t539 * t645;
+        let t649 = t633 * t633;
+        let t650 = t572 * t572;
+        let t652 = t537 * (t649 - t650);
+        let t659 = 3.188775510204082 * t650;
+        let t660 = t539 * t659;
+        let rate_dot_rod_leg3 = t538 * t581;
+        let t662 = t660 + rate_dot_rod_leg3;
+        let t664 = 3.188775510204082 * t649;
+        let t667 = s_rod_leg3 * t662 + c_rod_leg3 * (t563 - t664);
+        let grod_vx_leg3 = 1.5464739353293548 * t537;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t537;
+        let t682 = 1.7857142857142858 * t579;
+        let t692 = t596 + t617;
+        let t694 = t592 + t623;
+        let t696 = s_cross_leg3 * t692 + c_cross_leg3 * t694;
+        let t697 = c_rod_leg3 * t696;
+        let t699 = 0.8928571428571429 * t508;
+        let t702 = t539 * t699;
+        let t707 = t699 * (t659 + t563) + t702 * t662 - t549 * (t537 * t645);
+        let t712 = s_cross_leg3 * t694 - c_cross_leg3 * t692;
+        let t713 = s_rod_leg3 * t712;
+        let t730 = t699 * (t660 - rate_dot_rod_leg3) + t702 * (t664 + t563)
+            - t549 * t629;
+        let t732 = s_rod_leg3 * t696;
+        let t748 = rate_dot_cross_leg3 * (0.24 * s_cross_leg3) + t549 * t574;
+        let t758 = 0.24 * t694;
         Ok([
             [
-                t87, -(garm_vx_leg1 * t91), -(garm_vx_leg1 * t95), t87,
+                t73, -(garm_vx_leg1 * t78), -(garm_vx_leg1 * t82), t73,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t131, -(minus_gcross_vx_leg1 * t147),
-                -(minus_gcross_vx_leg1 * t165), -t174, -(minus_gcross_vx_leg1 * t178), 0.0,
-                t185
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t189 - 5.444444444444445 * t174),
-                garm_vx_leg1 * t220 + minus_gcross_vx_leg1 * t227,
-                garm_vx_leg1 * t246 - minus_gcross_vx_leg1 * t235,
-                t189,
-                t369,
-                -(garm_vx_leg2 * t376),
-                -(garm_vx_leg2 * t380),
-                t369,
-                garm_vx_leg2 * rate_arm_leg2,
-                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
-                garm_vx_leg2,
-                gcross_vx_leg2 * t420 - t422,
-                gcross_vx_leg2 * t442 - 4.9313582121471775 * t447,
-                gcross_vx_leg2 * t462 + minus_grod_vx_leg2 * t413,
-                t476,
-                -(gcross_vx_leg2 * t480 + 1.5464739353293548 * rate_dot_cross_leg2),
-                t488,
-                t185
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t493 + 5.444444444444445 * t476
-                            + 5.444444444444445 * t488),
-                garm_vx_leg2 * t524 + gcross_vx_leg2 * t531
-                    + minus_grod_vx_leg2 * (c_rod_leg2 * t536),
-                garm_vx_leg2 * t553 + gcross_vx_leg2 * t536,
-                t493,
-                t667,
-                garm_vx_leg3 * t674,
-                garm_vx_leg3 * t678,
-                t667,
-                garm_vx_leg3 * rate_arm_leg3,
-                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
-                garm_vx_leg3,
-                gcross_vx_leg3 * t718 - t720,
-                gcross_vx_leg3 * t740 + 4.9313582121471775 * t745,
-                gcross_vx_leg3 * t760 + grod_vx_leg3 * t711,
-                t774,
-                gcross_vx_leg3 * t778 + 1.5464739353293548 * rate_dot_cross_leg3,
-                t786,
-                t185
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t791 + 5.444444444444445 * t774
-                            + 5.444444444444445 * t786),
-                garm_vx_leg3 * t822 - gcross_vx_leg3 * t829
-                    - grod_vx_leg3 * (c_rod_leg3 * t834),
-                garm_vx_leg3 * t851 + gcross_vx_leg3 * t834,
-                t791,
-                acceleration[0],
+                garm_vx_leg1, minus_gcross_vx_leg1 * t114, -(minus_gcross_vx_leg1 * t126),
+                -(minus_gcross_vx_leg1 * t142), -(minus_gcross_vx_leg1 * t124),
+                -(minus_gcross_vx_leg1 * t152), 0.0,
+                -(garm_vx_leg1 * t166 + minus_gcross_vx_leg1 * t173),
+                garm_vx_leg1 * t187 + minus_gcross_vx_leg1 * t189,
+                garm_vx_leg1 * t205 - minus_gcross_vx_leg1 * t197, garm_vx_leg1 * t177, t320,
+                -(garm_vx_leg2 * t327), -(garm_vx_leg2 * t331), t320, garm_vx_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
+                gcross_vx_leg2 * t366 - t370, -(gcross_vx_leg2 * t382 + 4.9313582121471775 * t387),
+                gcross_vx_leg2 * t402 + minus_grod_vx_leg2 * t362, gcross_vx_leg2 * t380 + t370,
+                -(gcross_vx_leg2 * t417 + 1.5464739353293548 * rate_dot_cross_leg2),
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                gcross_vx_leg2 * t432 - garm_vx_leg2 * t442 - minus_grod_vx_leg2 * t448,
+                garm_vx_leg2 * t465 + gcross_vx_leg2 * t467 + 1.5464739353293548 * t447,
+                garm_vx_leg2 * t483 + gcross_vx_leg2 * t447, garm_vx_leg2 * t493, t585,
+                garm_vx_leg3 * t592, garm_vx_leg3 * t596, t585, garm_vx_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg3,
+                gcross_vx_leg3 * t631 - t635, gcross_vx_leg3 * t647 + 4.9313582121471775 * t652,
+                gcross_vx_leg3 * t667 + grod_vx_leg3 * t627, gcross_vx_leg3 * t645 + t635,
+                gcross_vx_leg3 * t682 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3,
+                gcross_vx_leg3 * t697 - garm_vx_leg3 * t707 - grod_vx_leg3 * t713,
+                garm_vx_leg3 * t730 - gcross_vx_leg3 * t732 - 1.5464739353293548 * t712,
+                garm_vx_leg3 * t748 + gcross_vx_leg3 * t712, garm_vx_leg3 * t758, acceleration[0],
             ],
             [
-                t88, -(garm_vy_leg1 * t91), -(garm_vy_leg1 * t95), t88,
+                t75, -(garm_vy_leg1 * t78), -(garm_vy_leg1 * t82), t75,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t131 - t135,
-                5.694241982507289 * (t53 * (t149 - t70 * t70))
-                    - minus_gcross_vy_leg1 * t147,
-                -(minus_gcross_vy_leg1 * t165 + grod_vy_leg1 * t124),
-                t176,
-                -(minus_gcross_vy_leg1 * t178
+                garm_vy_leg1, minus_gcross_vy_leg1 * t114 - t120,
+                -(grod_vy_leg1 * (t130 - (t128 + t63)) + minus_gcross_vy_leg1 * t126),
+                -(minus_gcross_vy_leg1 * t142 + grod_vy_leg1 * t110),
+                t120 - minus_gcross_vy_leg1 * t124,
+                -(minus_gcross_vy_leg1 * t152
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                t184,
-                t178
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t195 + 5.444444444444445 * t176
-                            + 5.444444444444445 * t184),
-                garm_vy_leg1 * t220 + minus_gcross_vy_leg1 * t227
-                    - 1.7857142857142858 * t235,
-                garm_vy_leg1 * t246 - minus_gcross_vy_leg1 * t235,
-                t195,
-                t373,
-                -(garm_vy_leg2 * t376),
-                -(garm_vy_leg2 * t380),
-                t373,
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                -(garm_vy_leg1 * t166 + 1.7857142857142858 * t178),
+                garm_vy_leg1 * t187 + minus_gcross_vy_leg1 * t189
+                    - 1.7857142857142858 * t197,
+                garm_vy_leg1 * t205 - minus_gcross_vy_leg1 * t197,
+                t178,
+                t324,
+                -(garm_vy_leg2 * t327),
+                -(garm_vy_leg2 * t331),
+                t324,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t420 + t430),
-                -(minus_gcross_vy_leg2 * t442 + 2.8471209912536444 * t447),
-                minus_grod_vy_leg2 * t413 - minus_gcross_vy_leg2 * t462,
-                t478,
-                minus_gcross_vy_leg2 * t480 - 0.8928571428571429 * rate_dot_cross_leg2,
-                t489,
-                t178
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t501 + 5.444444444444445 * t478
-                            + 5.444444444444445 * t489),
-                garm_vy_leg2 * t524 - minus_gcross_vy_leg2 * t531
-                    + 0.8928571428571429 * t536,
-                garm_vy_leg2 * t553 - minus_gcross_vy_leg2 * t536,
-                t501,
-                t671,
-                garm_vy_leg3 * t674,
-                garm_vy_leg3 * t678,
-                t671,
+                -(minus_gcross_vy_leg2 * t366 + t376),
+                -(2.8471209912536444 * t387 - minus_gcross_vy_leg2 * t382),
+                minus_grod_vy_leg2 * t362 - minus_gcross_vy_leg2 * t402,
+                t376 - minus_gcross_vy_leg2 * t380,
+                minus_gcross_vy_leg2 * t417 - 0.8928571428571429 * rate_dot_cross_leg2,
+                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
+                -(garm_vy_leg2 * t442 + minus_gcross_vy_leg2 * t432
+                    + minus_grod_vy_leg2 * t448),
+                garm_vy_leg2 * t465 - minus_gcross_vy_leg2 * t467
+                    + 0.8928571428571429 * t447,
+                garm_vy_leg2 * t483 - minus_gcross_vy_leg2 * t447,
+                garm_vy_leg2 * t493,
+                t589,
+                garm_vy_leg3 * t592,
+                garm_vy_leg3 * t596,
+                t589,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                gcross_vy_leg3 * t718 + t728,
-                gcross_vy_leg3 * t740 - 2.8471209912536444 * t745,
-                gcross_vy_leg3 * t760 - minus_grod_vy_leg3 * t711,
-                t776,
-                gcross_vy_leg3 * t778 - 0.8928571428571429 * rate_dot_cross_leg3,
-                -t787,
-                t178
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t799 + 5.444444444444445 * t776
-                            - 5.444444444444445 * t787),
-                garm_vy_leg3 * t822 - gcross_vy_leg3 * t829 + 0.8928571428571429 * t834,
-                garm_vy_leg3 * t851 + gcross_vy_leg3 * t834,
-                t799,
+                gcross_vy_leg3 * t631 + t641,
+                gcross_vy_leg3 * t647 - 2.8471209912536444 * t652,
+                gcross_vy_leg3 * t667 - minus_grod_vy_leg3 * t627,
+                gcross_vy_leg3 * t645 - t641,
+                gcross_vy_leg3 * t682 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                gcross_vy_leg3 * t697 - garm_vy_leg3 * t707 + minus_grod_vy_leg3 * t713,
+                garm_vy_leg3 * t730 - gcross_vy_leg3 * t732 + 0.8928571428571429 * t712,
+                garm_vy_leg3 * t748 + gcross_vy_leg3 * t712,
+                garm_vy_leg3 * t758,
                 acceleration[1],
             ],
             [
-                -t90, minus_garm_vz_leg1 * t91, minus_garm_vz_leg1 * t95, -t90,
+                -t77, minus_garm_vz_leg1 * t78, minus_garm_vz_leg1 * t82, -t77,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t131, -(minus_gcross_vz_leg1 * t147),
-                -(minus_gcross_vz_leg1 * t165), -t177, -(minus_gcross_vz_leg1 * t178), 0.0,
-                t204
-                    + 0.10285714285714286
-                        * (17.36111111111111 * t205 + 5.444444444444445 * t177),
-                minus_gcross_vz_leg1 * t227 - minus_garm_vz_leg1 * t220,
-                -(minus_garm_vz_leg1 * t246 + minus_gcross_vz_leg1 * t235),
-                -t205,
-                -t375,
-                minus_garm_vz_leg2 * t376,
-                minus_garm_vz_leg2 * t380,
-                -t375,
-                -(minus_garm_vz_leg2 * rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
-                -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t420,
-                gcross_vz_leg2 * t442,
-                gcross_vz_leg2 * t462,
-                t479,
-                -(gcross_vz_leg2 * t480),
-                0.0,
-                t204
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t479 - 17.36111111111111 * t510),
-                gcross_vz_leg2 * t531 - minus_garm_vz_leg2 * t524,
-                gcross_vz_leg2 * t536 - minus_garm_vz_leg2 * t553,
-                -t510,
-                -t673,
-                -(minus_garm_vz_leg3 * t674),
-                -(minus_garm_vz_leg3 * t678),
-                -t673,
-                -(minus_garm_vz_leg3 * rate_arm_leg3),
-                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
-                -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t718,
-                gcross_vz_leg3 * t740,
-                gcross_vz_leg3 * t760,
-                t777,
-                gcross_vz_leg3 * t778,
-                0.0,
-                t204
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t777 - 17.36111111111111 * t808),
-                -(minus_garm_vz_leg3 * t822 + gcross_vz_leg3 * t829),
-                gcross_vz_leg3 * t834 - minus_garm_vz_leg3 * t851,
-                -t808,
-                t203,
+                minus_gcross_vz_leg1 * t114, -(minus_gcross_vz_leg1 * t126),
+                -(minus_gcross_vz_leg1 * t142), -(minus_gcross_vz_leg1 * t124),
+                -(minus_gcross_vz_leg1 * t152), 0.0,
+                -(minus_gcross_vz_leg1 * t173 - minus_garm_vz_leg1 * t166),
+                minus_gcross_vz_leg1 * t189 - minus_garm_vz_leg1 * t187,
+                -(minus_garm_vz_leg1 * t205 + minus_gcross_vz_leg1 * t197),
+                -(minus_garm_vz_leg1 * t177), -t326, minus_garm_vz_leg2 * t327,
+                minus_garm_vz_leg2 * t331, -t326, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
+                -(minus_gcross_vz_leg2 * t366), minus_gcross_vz_leg2 * t382,
+                -(minus_gcross_vz_leg2 * t402), -(minus_gcross_vz_leg2 * t380),
+                minus_gcross_vz_leg2 * t417, 0.0,
+                minus_garm_vz_leg2 * t442 - minus_gcross_vz_leg2 * t432,
+                -(minus_gcross_vz_leg2 * t467 + minus_garm_vz_leg2 * t465),
+                -(minus_gcross_vz_leg2 * t447 + minus_garm_vz_leg2 * t483),
+                -(minus_garm_vz_leg2 * t493), -t591, -(minus_garm_vz_leg3 * t592),
+                -(minus_garm_vz_leg3 * t596), -t591, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
+                gcross_vz_leg3 * t631, gcross_vz_leg3 * t647, gcross_vz_leg3 * t667,
+                gcross_vz_leg3 * t645, gcross_vz_leg3 * t682, 0.0,
+                minus_garm_vz_leg3 * t707 + gcross_vz_leg3 * t697,
+                -(minus_garm_vz_leg3 * t730 + gcross_vz_leg3 * t732),
+                gcross_vz_leg3 * t712 - minus_garm_vz_leg3 * t748, -(minus_garm_vz_leg3 * t758),
+                acceleration[2] + 9.81,
             ],
         ])
     }
@@ -2175,7 +2093,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 733 operations (223 additions, 504 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 619 intermediates.
+    /// 653 operations (194 additions, 453 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 539 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2204,434 +2122,416 @@ impl Delta {
         let t11 = 4.166666666666667 * t10;
         let garm_vx_leg1 = c_armcross_leg1 * t11;
         let t16 = 0.24 * c_cross_leg1;
-        let t19 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let t22 = 1.0 / c_rod_leg1;
         let t23 = s_rod_leg1 * t22;
-        let rate_arm_leg1 = t11 * (t19 + t23 * twist[1]);
+        let t24 = t23 * twist[1];
+        let rate_arm_leg1 = t11
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t24);
         let t27 = rate_arm_leg1 * rate_arm_leg1;
+        let t29 = 0.56 * c_rod_leg1;
         let grod_vy_leg1 = 1.7857142857142858 * t22;
-        let t31 = c_cross_leg1 * t10;
-        let garm_vy_leg1 = t11 * t23;
-        let t34 = t16 * garm_vy_leg1;
-        let t40 = t31 * t19 + t34 * twist[1] + s_armcross_leg1 * twist[0]
+        let t35 = t16 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t40;
-        let t42 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
+        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t44 = rate_rod_leg1 * rate_rod_leg1;
-        let t45 = t42 + t44;
-        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t16 * t27 + 0.56 * c_rod_leg1 * t45;
-        let t49 = 0.56 * s_rod_leg1;
-        let t50 = t49 * minus_rate_cross_leg1;
-        let t51 = minus_rate_cross_leg1 * t50;
-        let t54 = acceleration[1] - (t51 - t49 * t45);
-        let rate_dot_arm_leg1 = t11 * (t48 + t23 * t54);
-        let t58 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let t59 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let t39 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = acceleration[1] + t24 * rate_rod_leg1;
+        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t16 * t27 + t29 * (t37 + t39) + t23 * t45;
+        let rate_dot_arm_leg1 = t11 * t47;
+        let t49 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t11 * t23;
+        let t51 = garm_vy_leg1 * rate_dot_arm_leg1;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let t61 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t62 = 9.81 * c_arm_leg1;
-        let t66 = 9.81 * s_arm_leg1;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t31 + s_armcross_leg1);
-        let t85 = 0.24 * s_cross_leg1;
-        let t88 = t49 * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t92 = t31 * t48 + t34 * t54 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t85 * t27 + t88 + t88;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t92;
-        let t94 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t96 = rate_rod_leg1 * (1.7857142857142858 * t40);
-        let t97 = t94 + t96;
-        let t100 = c_rod_leg1 * (1.7857142857142858 * t88);
-        let t101 = s_rod_leg1 * t97 + t100;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t34;
-        let t105 = 3.188775510204082 * t51;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t31);
-        let t111 = t88 - t92;
-        let t115 = t96 + t97;
-        let t117 = s_rod_leg1 * (1.7857142857142858 * (t88 + t111)) - c_rod_leg1 * t115;
-        let t119 = t50 * t50;
-        let t128 = 3.188775510204082 * (t40 * t50);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t54;
-        let t132 = 3.188775510204082 * t119;
-        let t135 = s_rod_leg1 * (t128 + rate_dot_rod_leg1) + c_rod_leg1 * (t44 - t132);
-        let t143 = t100 + c_rod_leg1 * (1.7857142857142858 * t111);
-        let t144 = minus_gcross_vx_leg1 * t143;
-        let t146 = t105 - minus_gcross_vy_leg1 * t143;
-        let t147 = minus_gcross_vz_leg1 * t143;
-        let t148 = 1.7857142857142858 * acceleration[1];
-        let t154 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t155 = 1.7857142857142858 * acceleration[0];
-        let t157 = 0.24 * rate_dot_arm_leg1 - t62;
-        let t158 = 0.24 * t157;
-        let t159 = garm_vx_leg1 * t158;
-        let t165 = garm_vy_leg1 * t158;
-        let t173 = acceleration[2] + 9.81;
-        let t174 = 1.7857142857142858 * t173;
-        let t175 = minus_garm_vz_leg1 * t158;
-        let t181 = s_cross_leg1 * c_rod_leg1;
-        let t185 = t85 * s_rod_leg1;
-        let t190 = 0.24 * t181 * (t128 - rate_dot_rod_leg1) + t185 * (t132 + t44)
-            + t16 * t115;
-        let t193 = t66 + 0.24 * t27;
-        let t197 = s_rod_leg1 * (s_cross_leg1 * t193 + c_cross_leg1 * t157);
-        let t205 = s_cross_leg1 * t157 - c_cross_leg1 * t193;
-        let t216 = t16 * t42 - (0.42857142857142855 * (t181 * t92) + t94 * t185);
-        let t228 = 1.0 / s_cross_leg2;
-        let t229 = 4.166666666666667 * t228;
+        let t53 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t54 = 9.81 * c_arm_leg1;
+        let t58 = 9.81 * s_arm_leg1;
+        let t68 = t10 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t68;
+        let t71 = rate_rod_leg1 * (1.7857142857142858 * t35);
+        let t72 = 0.24 * rate_dot_arm_leg1;
+        let t77 = 0.24 * s_cross_leg1;
+        let t79 = t24 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t72 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t77 * t27 + t79 + t79);
+        let t85 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t87 = t71 + t85 + t71;
+        let t88 = s_rod_leg1 * t87;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
+        let t93 = t23 * t35;
+        let t95 = 3.188775510204082 * (minus_rate_cross_leg1 * t93);
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t68;
+        let t99 = t88 - minus_rate_dot_cross_leg1;
+        let t102 = t23 * t99 - c_rod_leg1 * t87;
+        let t104 = t93 * t93;
+        let t112 = t29 * t95;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
+        let t116 = 3.188775510204082 * t104;
+        let t119 = s_rod_leg1 * (t112 + rate_dot_rod_leg1) + c_rod_leg1 * (t39 - t116);
+        let t125 = minus_gcross_vx_leg1 * t99;
+        let t127 = t95 - minus_gcross_vy_leg1 * t99;
+        let t128 = minus_minus_gcross_vz_leg1 * t99;
+        let t129 = 1.7857142857142858 * acceleration[1];
+        let t135 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t136 = 1.7857142857142858 * acceleration[0];
+        let t137 = t72 - t54;
+        let t138 = 0.24 * t137;
+        let t139 = garm_vx_leg1 * t138;
+        let t145 = garm_vy_leg1 * t138;
+        let t153 = acceleration[2] + 9.81;
+        let t154 = 1.7857142857142858 * t153;
+        let t155 = minus_garm_vz_leg1 * t138;
+        let t169 = t77 * (c_rod_leg1 * (t112 - rate_dot_rod_leg1))
+            + t77 * s_rod_leg1 * (t116 + t39) + t16 * t87;
+        let t172 = t58 + 0.24 * t27;
+        let t176 = s_rod_leg1 * (s_cross_leg1 * t172 + c_cross_leg1 * t137);
+        let t184 = s_cross_leg1 * t137 - c_cross_leg1 * t172;
+        let t192 = t16 * t37 - t77 * minus_rate_dot_cross_leg1;
+        let t204 = 1.0 / s_cross_leg2;
+        let t205 = 4.166666666666667 * t204;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t238 = 0.5 * c_armcross_leg2;
-        let t241 = 1.0 / c_rod_leg2;
-        let t242 = s_rod_leg2 * t241;
-        let minus_garm_vx_leg2 = t229 * (t238 + 0.8660254037844387 * t242);
-        let t246 = 0.8660254037844387 * c_armcross_leg2;
-        let t252 = 0.24 * c_cross_leg2;
-        let t257 = t246 * twist[1] - t238 * twist[0] - s_armcross_leg2 * twist[2];
-        let t258 = 0.8660254037844387 * twist[0];
-        let t259 = 0.5 * twist[1];
-        let t260 = t258 + t259;
-        let rate_arm_leg2 = t229 * (t257 - t242 * t260);
-        let t264 = rate_arm_leg2 * rate_arm_leg2;
-        let t267 = 1.7857142857142858 * t241;
-        let minus_rate_rod_leg2 = t267 * t260;
-        let t269 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t270 = 0.5 * s_armcross_leg2;
-        let t272 = 0.8660254037844387 * s_armcross_leg2;
-        let t277 = c_cross_leg2 * t228;
-        let t281 = t252 * (t229 * t242);
-        let t283 = t270 * twist[0] - t272 * twist[1] - c_armcross_leg2 * twist[2]
-            - t277 * t257 + t281 * t260;
-        let rate_cross_leg2 = t267 * t283;
-        let t285 = rate_cross_leg2 * rate_cross_leg2;
-        let t286 = t269 + t285;
-        let t289 = t246 * acceleration[1] - t238 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t252 * t264 + 0.56 * c_rod_leg2 * t286;
-        let t290 = 0.8660254037844387 * acceleration[0];
-        let t291 = 0.5 * acceleration[1];
-        let t292 = t290 + t291;
-        let t293 = 0.56 * s_rod_leg2;
-        let t294 = t293 * rate_cross_leg2;
-        let t295 = rate_cross_leg2 * t294;
-        let t298 = t292 + t295 - t293 * t286;
-        let rate_dot_arm_leg2 = t229 * (t289 - t242 * t298);
-        let t302 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t229 * (t246 - 0.5 * t242);
-        let t306 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t229;
-        let t308 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t309 = 9.81 * c_arm_leg2;
-        let t313 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = t267 * (t238 * t277 + t270 + 0.8660254037844387 * t281);
-        let t333 = 0.24 * s_cross_leg2;
-        let t336 = t293 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t341 = t270 * acceleration[0] - t272 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t333 * t264 + t336 + t336)
-            - t277 * t289;
-        let t343 = t341 + t281 * t298;
-        let rate_dot_cross_leg2 = t267 * t343;
-        let t345 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t347 = minus_rate_rod_leg2 * (1.7857142857142858 * t283);
-        let t348 = t345 - t347;
-        let t351 = c_rod_leg2 * (1.7857142857142858 * t336);
-        let t352 = s_rod_leg2 * t348 - t351;
-        let t354 = 2.76156059880242 * t295;
-        let gcross_vy_leg2 = t267 * (0.5 * t281 - (t246 * t277 + t272));
-        let t362 = 1.594387755102041 * t295;
-        let gcross_vz_leg2 = t267 * (s_armcross_leg2 * t277 - c_armcross_leg2);
-        let t368 = t343 + t336;
-        let t372 = t348 - t347;
-        let t374 = s_rod_leg2 * (1.7857142857142858 * (t336 + t368)) + c_rod_leg2 * t372;
-        let t376 = t294 * t294;
-        let t379 = t241 * (t376 - t283 * t283);
-        let t387 = 3.188775510204082 * (t283 * t294);
-        let minus_rate_dot_rod_leg2 = t267 * t298;
-        let t391 = 3.188775510204082 * t376;
-        let t394 = s_rod_leg2 * (t387 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t269 - t391);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t241;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t241;
-        let t406 = t351 + c_rod_leg2 * (1.7857142857142858 * t368);
-        let t408 = gcross_vx_leg2 * t406 - t354;
-        let t410 = gcross_vy_leg2 * t406 - t362;
-        let t411 = gcross_vz_leg2 * t406;
-        let t412 = 1.7857142857142858 * t292;
-        let t420 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t421 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
-        let t424 = 0.24 * rate_dot_arm_leg2 - t309;
-        let t425 = 0.24 * t424;
-        let t426 = minus_garm_vx_leg2 * t425;
-        let t433 = garm_vy_leg2 * t425;
-        let t442 = minus_garm_vz_leg2 * t425;
-        let t449 = t313 + 0.24 * t264;
-        let t451 = s_cross_leg2 * t424 - c_cross_leg2 * t449;
-        let t454 = s_cross_leg2 * c_rod_leg2;
-        let t458 = t333 * s_rod_leg2;
-        let t463 = 0.24 * t454 * (t387 + minus_rate_dot_rod_leg2) + t458 * (t391 + t269)
-            - t252 * t372;
-        let t468 = s_rod_leg2 * (s_cross_leg2 * t449 + c_cross_leg2 * t424);
-        let t486 = 0.42857142857142855 * (t454 * t343) + t345 * t458 + t252 * t285;
-        let t497 = 1.0 / s_cross_leg3;
-        let t498 = 4.166666666666667 * t497;
-        let t501 = 1.0 / c_rod_leg3;
-        let t502 = s_rod_leg3 * t501;
+        let t214 = 0.5 * c_armcross_leg2;
+        let t217 = 1.0 / c_rod_leg2;
+        let t218 = s_rod_leg2 * t217;
+        let minus_garm_vx_leg2 = t205 * (t214 + 0.8660254037844387 * t218);
+        let t222 = 0.8660254037844387 * c_armcross_leg2;
+        let t228 = 0.24 * c_cross_leg2;
+        let t234 = 0.8660254037844387 * twist[0];
+        let t235 = 0.5 * twist[1];
+        let t236 = t234 + t235;
+        let t237 = t218 * t236;
+        let rate_arm_leg2 = t205
+            * (t222 * twist[1] - t214 * twist[0] - s_armcross_leg2 * twist[2] - t237);
+        let t240 = rate_arm_leg2 * rate_arm_leg2;
+        let t243 = 1.7857142857142858 * t217;
+        let minus_rate_rod_leg2 = t243 * t236;
+        let t245 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t246 = 0.5 * s_armcross_leg2;
+        let t248 = 0.8660254037844387 * s_armcross_leg2;
+        let t254 = t246 * twist[0] - t248 * twist[1] - c_armcross_leg2 * twist[2]
+            - t228 * rate_arm_leg2;
+        let rate_cross_leg2 = t243 * t254;
+        let t256 = rate_cross_leg2 * rate_cross_leg2;
+        let t260 = t222 * acceleration[1] - t214 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t228 * t240
+            + 0.56 * c_rod_leg2 * (t245 + t256);
+        let t261 = 0.8660254037844387 * acceleration[0];
+        let t262 = 0.5 * acceleration[1];
+        let t263 = t261 + t262;
+        let t265 = t263 - t237 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t205 * (t260 - t218 * t265);
+        let t269 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t205 * (t222 - 0.5 * t218);
+        let t273 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t205;
+        let t275 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t276 = 9.81 * c_arm_leg2;
+        let t280 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t243 * (t246 + minus_garm_vx_leg2 * t228);
+        let t298 = 0.24 * s_cross_leg2;
+        let t300 = t237 * rate_cross_leg2;
+        let t304 = 0.24 * rate_dot_arm_leg2;
+        let t306 = t246 * acceleration[0] - t248 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t298 * t240 + t300 + t300)
+            - c_cross_leg2 * t304;
+        let rate_dot_cross_leg2 = t243 * t306;
+        let t308 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t309 = 1.7857142857142858 * t254;
+        let t310 = minus_rate_rod_leg2 * t309;
+        let t312 = t308 - t310 - t310;
+        let t313 = s_rod_leg2 * t312;
+        let t315 = s_rod_leg2 * rate_cross_leg2;
+        let t316 = 0.56 * t315;
+        let t317 = rate_cross_leg2 * t316;
+        let t318 = 2.76156059880242 * t317;
+        let minus_gcross_vy_leg2 = t243 * (t248 + t228 * garm_vy_leg2);
+        let t324 = 1.594387755102041 * t317;
+        let gcross_vz_leg2 = t243 * (t204 * s_arm_leg2);
+        let t329 = rate_dot_cross_leg2 - t313;
+        let t332 = t218 * t329 + c_rod_leg2 * t312;
+        let t334 = t316 * t316;
+        let t337 = t217 * (t334 - t254 * t254);
+        let t344 = t309 * t315;
+        let minus_rate_dot_rod_leg2 = t243 * t265;
+        let t348 = 3.188775510204082 * t334;
+        let t351 = s_rod_leg2 * (t344 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t245 - t348);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t217;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t217;
+        let t362 = gcross_vx_leg2 * t329 - t318;
+        let t364 = minus_gcross_vy_leg2 * t329 + t324;
+        let t365 = gcross_vz_leg2 * t329;
+        let t366 = 1.7857142857142858 * t263;
+        let t374 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t375 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t377 = t304 - t276;
+        let t378 = 0.24 * t377;
+        let t379 = minus_garm_vx_leg2 * t378;
+        let t386 = garm_vy_leg2 * t378;
+        let t395 = minus_garm_vz_leg2 * t378;
+        let t402 = t280 + 0.24 * t240;
+        let t404 = s_cross_leg2 * t377 - c_cross_leg2 * t402;
+        let t414 = t298 * (c_rod_leg2 * (t344 + minus_rate_dot_rod_leg2))
+            + t298 * s_rod_leg2 * (t348 + t245) - t228 * t312;
+        let t419 = s_rod_leg2 * (s_cross_leg2 * t402 + c_cross_leg2 * t377);
+        let t434 = t298 * rate_dot_cross_leg2 + t228 * t256;
+        let t445 = 1.0 / s_cross_leg3;
+        let t446 = 4.166666666666667 * t445;
+        let t449 = 1.0 / c_rod_leg3;
+        let t450 = s_rod_leg3 * t449;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t512 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t498 * (0.8660254037844387 * t502 - t512);
-        let t515 = 0.24 * c_cross_leg3;
-        let t516 = t258 - t259;
-        let t519 = 0.8660254037844387 * c_armcross_leg3;
-        let t523 = t512 * twist[0] + t519 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t498 * (t502 * t516 - t523);
-        let t526 = rate_arm_leg3 * rate_arm_leg3;
-        let t529 = 1.7857142857142858 * t501;
-        let rate_rod_leg3 = t529 * t516;
-        let t531 = rate_rod_leg3 * rate_rod_leg3;
-        let t532 = c_cross_leg3 * t497;
-        let t534 = 0.5 * s_armcross_leg3;
-        let t536 = 0.8660254037844387 * s_armcross_leg3;
-        let t543 = t515 * (t498 * t502);
-        let t545 = t532 * t523 + t534 * twist[0] + t536 * twist[1]
-            - c_armcross_leg3 * twist[2] - t543 * t516;
-        let rate_cross_leg3 = t529 * t545;
-        let t547 = rate_cross_leg3 * rate_cross_leg3;
-        let t548 = t531 + t547;
-        let t556 = t515 * t526 + 0.56 * c_rod_leg3 * t548
-            - (t512 * acceleration[0] + t519 * acceleration[1]
+        let t460 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t446 * (0.8660254037844387 * t450 - t460);
+        let t463 = 0.24 * c_cross_leg3;
+        let t464 = t234 - t235;
+        let t465 = t450 * t464;
+        let t467 = 0.8660254037844387 * c_armcross_leg3;
+        let rate_arm_leg3 = t446
+            * (t465 - (t460 * twist[0] + t467 * twist[1] + s_armcross_leg3 * twist[2]));
+        let t474 = rate_arm_leg3 * rate_arm_leg3;
+        let t477 = 1.7857142857142858 * t449;
+        let rate_rod_leg3 = t477 * t464;
+        let t479 = rate_rod_leg3 * rate_rod_leg3;
+        let t480 = 0.5 * s_armcross_leg3;
+        let t482 = 0.8660254037844387 * s_armcross_leg3;
+        let t488 = t480 * twist[0] + t482 * twist[1] - c_armcross_leg3 * twist[2]
+            - t463 * rate_arm_leg3;
+        let rate_cross_leg3 = t477 * t488;
+        let t490 = rate_cross_leg3 * rate_cross_leg3;
+        let t499 = t463 * t474 + 0.56 * c_rod_leg3 * (t479 + t490)
+            - (t460 * acceleration[0] + t467 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t557 = t290 - t291;
-        let t558 = 0.56 * s_rod_leg3;
-        let t559 = t558 * rate_cross_leg3;
-        let t560 = rate_cross_leg3 * t559;
-        let t563 = t557 - (t560 - t558 * t548);
-        let rate_dot_arm_leg3 = t498 * (t556 + t502 * t563);
-        let t567 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t498 * (t519 + 0.5 * t502);
-        let t571 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t498;
-        let t573 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t574 = 9.81 * c_arm_leg3;
-        let t578 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t529 * (t512 * t532 + t534 - 0.8660254037844387 * t543);
-        let t598 = 0.24 * s_cross_leg3;
-        let t601 = t558 * (rate_cross_leg3 * rate_rod_leg3);
-        let t606 = t534 * acceleration[0] + t536 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t598 * t526 - t601 - t601)
-            - t532 * t556;
-        let t608 = t606 - t543 * t563;
-        let rate_dot_cross_leg3 = t529 * t608;
-        let t610 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t612 = rate_rod_leg3 * (1.7857142857142858 * t545);
-        let t613 = t610 + t612;
-        let t616 = c_rod_leg3 * (1.7857142857142858 * t601);
-        let t617 = s_rod_leg3 * t613 + t616;
-        let t619 = 2.76156059880242 * t560;
-        let gcross_vy_leg3 = t529 * (t519 * t532 + t536 + 0.5 * t543);
-        let t627 = 1.594387755102041 * t560;
-        let gcross_vz_leg3 = t529 * (s_armcross_leg3 * t532 - c_armcross_leg3);
-        let t633 = t612 + t613;
-        let t635 = t608 - t601;
-        let t639 = c_rod_leg3 * t633 - s_rod_leg3 * (1.7857142857142858 * (t601 - t635));
-        let t641 = t559 * t559;
-        let t644 = t501 * (t641 - t545 * t545);
-        let t652 = 3.188775510204082 * (t545 * t559);
-        let rate_dot_rod_leg3 = t529 * t563;
-        let t656 = 3.188775510204082 * t641;
-        let t659 = s_rod_leg3 * (t652 + rate_dot_rod_leg3) + c_rod_leg3 * (t531 - t656);
-        let grod_vx_leg3 = 1.5464739353293548 * t501;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t501;
-        let t671 = c_rod_leg3 * (1.7857142857142858 * t635) - t616;
-        let t673 = gcross_vx_leg3 * t671 + t619;
-        let t675 = gcross_vy_leg3 * t671 - t627;
-        let t676 = gcross_vz_leg3 * t671;
-        let t677 = 1.7857142857142858 * t557;
-        let t685 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t686 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t688 = 0.24 * rate_dot_arm_leg3 - t574;
-        let t689 = 0.24 * t688;
-        let t690 = garm_vx_leg3 * t689;
-        let t699 = minus_garm_vy_leg3 * t689;
-        let t707 = minus_garm_vz_leg3 * t689;
-        let t712 = s_cross_leg3 * c_rod_leg3;
-        let t716 = t598 * s_rod_leg3;
-        let t721 = 0.24 * t712 * (t652 - rate_dot_rod_leg3) + t716 * (t656 + t531)
-            - t515 * t633;
-        let t724 = t578 + 0.24 * t526;
-        let t728 = s_rod_leg3 * (s_cross_leg3 * t724 + c_cross_leg3 * t688);
-        let t733 = s_cross_leg3 * t688 - c_cross_leg3 * t724;
-        let t750 = 0.42857142857142855 * (t712 * t608) + t610 * t716 + t515 * t547;
+        let t500 = t261 - t262;
+        let t502 = t500 + t465 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t446 * (t499 + t450 * t502);
+        let t506 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t446 * (t467 + 0.5 * t450);
+        let t510 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t446;
+        let t512 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t513 = 9.81 * c_arm_leg3;
+        let t517 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t477 * (t480 - garm_vx_leg3 * t463);
+        let t530 = 1.7857142857142858 * t488;
+        let t531 = rate_rod_leg3 * t530;
+        let t537 = 0.24 * s_cross_leg3;
+        let t539 = t465 * rate_cross_leg3;
+        let t543 = 0.24 * rate_dot_arm_leg3;
+        let t545 = t480 * acceleration[0] + t482 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t537 * t474 - t539 - t539)
+            - c_cross_leg3 * t543;
+        let rate_dot_cross_leg3 = t477 * t545;
+        let t547 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t549 = t531 + t547 + t531;
+        let t550 = s_rod_leg3 * t549;
+        let t552 = s_rod_leg3 * rate_cross_leg3;
+        let t553 = 0.56 * t552;
+        let t554 = rate_cross_leg3 * t553;
+        let t555 = 2.76156059880242 * t554;
+        let gcross_vy_leg3 = t477 * (t482 + t463 * minus_garm_vy_leg3);
+        let t561 = 1.594387755102041 * t554;
+        let gcross_vz_leg3 = t477 * (t445 * s_arm_leg3);
+        let t567 = rate_dot_cross_leg3 - t550;
+        let t569 = c_rod_leg3 * t549 + t450 * t567;
+        let t571 = t553 * t553;
+        let t574 = t449 * (t571 - t488 * t488);
+        let t581 = t530 * t552;
+        let rate_dot_rod_leg3 = t477 * t502;
+        let t585 = 3.188775510204082 * t571;
+        let t588 = s_rod_leg3 * (t581 + rate_dot_rod_leg3) + c_rod_leg3 * (t479 - t585);
+        let grod_vx_leg3 = 1.5464739353293548 * t449;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t449;
+        let t599 = gcross_vx_leg3 * t567 + t555;
+        let t601 = gcross_vy_leg3 * t567 - t561;
+        let t602 = gcross_vz_leg3 * t567;
+        let t603 = 1.7857142857142858 * t500;
+        let t611 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t612 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t613 = t543 - t513;
+        let t614 = 0.24 * t613;
+        let t615 = garm_vx_leg3 * t614;
+        let t624 = minus_garm_vy_leg3 * t614;
+        let t632 = minus_garm_vz_leg3 * t614;
+        let t645 = t537 * (c_rod_leg3 * (t581 - rate_dot_rod_leg3))
+            + t537 * s_rod_leg3 * (t585 + t479) - t463 * t549;
+        let t648 = t517 + 0.24 * t474;
+        let t652 = s_rod_leg3 * (s_cross_leg3 * t648 + c_cross_leg3 * t613);
+        let t657 = s_cross_leg3 * t613 - c_cross_leg3 * t648;
+        let t670 = t537 * rate_dot_cross_leg3 + t463 * t490;
         Ok([
             [
-                t58, -(garm_vx_leg1 * t62), garm_vx_leg1 * t66, t58, garm_vx_leg1 * rate_arm_leg1,
+                t49, -(garm_vx_leg1 * t54), garm_vx_leg1 * t58, t49, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t101, -(minus_gcross_vx_leg1 * t117),
-                -(minus_gcross_vx_leg1 * t135), -t144, -(minus_gcross_vx_leg1 * t148), 0.0,
-                t155
+                minus_gcross_vx_leg1 * t88, -(minus_gcross_vx_leg1 * t102),
+                -(minus_gcross_vx_leg1 * t119), -t125, -(minus_gcross_vx_leg1 * t129), 0.0,
+                t136
                     - 0.10285714285714286
-                        * (17.36111111111111 * t159 - 5.444444444444445 * t144),
-                garm_vx_leg1 * t190 + minus_gcross_vx_leg1 * t197,
-                garm_vx_leg1 * t216 - minus_gcross_vx_leg1 * t205,
-                t159,
-                -t302,
-                minus_garm_vx_leg2 * t309,
-                -(minus_garm_vx_leg2 * t313),
-                -t302,
+                        * (17.36111111111111 * t139 - 5.444444444444445 * t125),
+                garm_vx_leg1 * t169 + minus_gcross_vx_leg1 * t176,
+                garm_vx_leg1 * t192 - minus_gcross_vx_leg1 * t184,
+                t139,
+                -t269,
+                minus_garm_vx_leg2 * t276,
+                -(minus_garm_vx_leg2 * t280),
+                -t269,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t352 + t354,
-                gcross_vx_leg2 * t374 - 4.9313582121471775 * t379,
-                gcross_vx_leg2 * t394 - minus_grod_vx_leg2 * t345,
-                t408,
-                -(gcross_vx_leg2 * t412 + 1.5464739353293548 * rate_dot_cross_leg2),
-                t420,
-                t155
+                gcross_vx_leg2 * t313 + t318,
+                gcross_vx_leg2 * t332 - 4.9313582121471775 * t337,
+                gcross_vx_leg2 * t351 - minus_grod_vx_leg2 * t308,
+                t362,
+                -(gcross_vx_leg2 * t366 + 1.5464739353293548 * rate_dot_cross_leg2),
+                t374,
+                t136
                     - 0.10285714285714286
-                        * (5.444444444444445 * t408 - 17.36111111111111 * t426
-                            + 5.444444444444445 * t420),
-                minus_grod_vx_leg2 * (c_rod_leg2 * t451)
-                    - (minus_garm_vx_leg2 * t463 + gcross_vx_leg2 * t468),
-                gcross_vx_leg2 * t451 - minus_garm_vx_leg2 * t486,
-                -t426,
-                t567,
-                -(garm_vx_leg3 * t574),
-                garm_vx_leg3 * t578,
-                t567,
+                        * (5.444444444444445 * t362 - 17.36111111111111 * t379
+                            + 5.444444444444445 * t374),
+                1.5464739353293548 * t404
+                    - (minus_garm_vx_leg2 * t414 + gcross_vx_leg2 * t419),
+                gcross_vx_leg2 * t404 - minus_garm_vx_leg2 * t434,
+                -t379,
+                t506,
+                -(garm_vx_leg3 * t513),
+                garm_vx_leg3 * t517,
+                t506,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                gcross_vx_leg3 * t617 - t619,
-                gcross_vx_leg3 * t639 + 4.9313582121471775 * t644,
-                gcross_vx_leg3 * t659 + grod_vx_leg3 * t610,
-                t673,
-                gcross_vx_leg3 * t677 + 1.5464739353293548 * rate_dot_cross_leg3,
-                t685,
-                t155
+                gcross_vx_leg3 * t550 - t555,
+                gcross_vx_leg3 * t569 + 4.9313582121471775 * t574,
+                gcross_vx_leg3 * t588 + grod_vx_leg3 * t547,
+                t599,
+                gcross_vx_leg3 * t603 + 1.5464739353293548 * rate_dot_cross_leg3,
+                t611,
+                t136
                     - 0.10285714285714286
-                        * (17.36111111111111 * t690 + 5.444444444444445 * t673
-                            + 5.444444444444445 * t685),
-                garm_vx_leg3 * t721 - gcross_vx_leg3 * t728
-                    - grod_vx_leg3 * (c_rod_leg3 * t733),
-                garm_vx_leg3 * t750 + gcross_vx_leg3 * t733,
-                t690,
+                        * (17.36111111111111 * t615 + 5.444444444444445 * t599
+                            + 5.444444444444445 * t611),
+                garm_vx_leg3 * t645 - gcross_vx_leg3 * t652 - 1.5464739353293548 * t657,
+                garm_vx_leg3 * t670 + gcross_vx_leg3 * t657,
+                t615,
                 acceleration[0],
             ],
             [
-                t59, -(garm_vy_leg1 * t62), garm_vy_leg1 * t66, t59, garm_vy_leg1 * rate_arm_leg1,
+                t51, -(garm_vy_leg1 * t54), garm_vy_leg1 * t58, t51, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t101 - t105,
-                5.694241982507289 * (t22 * (t119 - t40 * t40))
-                    - minus_gcross_vy_leg1 * t117,
-                -(minus_gcross_vy_leg1 * t135 + grod_vy_leg1 * t94),
-                t146,
-                -(minus_gcross_vy_leg1 * t148
+                minus_gcross_vy_leg1 * t88 - t95,
+                5.694241982507289 * (t22 * (t104 - t35 * t35))
+                    - minus_gcross_vy_leg1 * t102,
+                -(minus_gcross_vy_leg1 * t119 + grod_vy_leg1 * t85),
+                t127,
+                -(minus_gcross_vy_leg1 * t129
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                t154,
-                t148
+                t135,
+                t129
                     - 0.10285714285714286
-                        * (17.36111111111111 * t165 + 5.444444444444445 * t146
-                            + 5.444444444444445 * t154),
-                garm_vy_leg1 * t190 + minus_gcross_vy_leg1 * t197
-                    - 1.7857142857142858 * t205,
-                garm_vy_leg1 * t216 - minus_gcross_vy_leg1 * t205,
-                t165,
-                t306,
-                -(garm_vy_leg2 * t309),
-                garm_vy_leg2 * t313,
-                t306,
+                        * (17.36111111111111 * t145 + 5.444444444444445 * t127
+                            + 5.444444444444445 * t135),
+                garm_vy_leg1 * t169 + minus_gcross_vy_leg1 * t176
+                    - 1.7857142857142858 * t184,
+                garm_vy_leg1 * t192 - minus_gcross_vy_leg1 * t184,
+                t145,
+                t273,
+                -(garm_vy_leg2 * t276),
+                garm_vy_leg2 * t280,
+                t273,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                gcross_vy_leg2 * t352 + t362,
-                gcross_vy_leg2 * t374 - 2.8471209912536444 * t379,
-                gcross_vy_leg2 * t394 - minus_grod_vy_leg2 * t345,
-                t410,
-                -(gcross_vy_leg2 * t412 + 0.8928571428571429 * rate_dot_cross_leg2),
-                t421,
-                t148
+                t324 - minus_gcross_vy_leg2 * t313,
+                -(minus_gcross_vy_leg2 * t332 + 2.8471209912536444 * t337),
+                -(minus_gcross_vy_leg2 * t351 + minus_grod_vy_leg2 * t308),
+                -t364,
+                -(0.8928571428571429 * rate_dot_cross_leg2
+                    - minus_gcross_vy_leg2 * t366),
+                t375,
+                t129
                     - 0.10285714285714286
-                        * (17.36111111111111 * t433 + 5.444444444444445 * t410
-                            + 5.444444444444445 * t421),
-                garm_vy_leg2 * t463 - gcross_vy_leg2 * t468 + 0.8928571428571429 * t451,
-                garm_vy_leg2 * t486 + gcross_vy_leg2 * t451,
-                t433,
-                -t571,
-                minus_garm_vy_leg3 * t574,
-                -(minus_garm_vy_leg3 * t578),
-                -t571,
+                        * (17.36111111111111 * t386 - 5.444444444444445 * t364
+                            + 5.444444444444445 * t375),
+                garm_vy_leg2 * t414 + minus_gcross_vy_leg2 * t419
+                    + 0.8928571428571429 * t404,
+                garm_vy_leg2 * t434 - minus_gcross_vy_leg2 * t404,
+                t386,
+                -t510,
+                minus_garm_vy_leg3 * t513,
+                -(minus_garm_vy_leg3 * t517),
+                -t510,
                 -(minus_garm_vy_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t617 + t627,
-                gcross_vy_leg3 * t639 - 2.8471209912536444 * t644,
-                gcross_vy_leg3 * t659 - minus_grod_vy_leg3 * t610,
-                t675,
-                gcross_vy_leg3 * t677 - 0.8928571428571429 * rate_dot_cross_leg3,
-                -t686,
-                t148
+                gcross_vy_leg3 * t550 + t561,
+                gcross_vy_leg3 * t569 - 2.8471209912536444 * t574,
+                gcross_vy_leg3 * t588 - minus_grod_vy_leg3 * t547,
+                t601,
+                gcross_vy_leg3 * t603 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -t612,
+                t129
                     - 0.10285714285714286
-                        * (5.444444444444445 * t675 - 17.36111111111111 * t699
-                            - 5.444444444444445 * t686),
-                0.8928571428571429 * t733
-                    - (minus_garm_vy_leg3 * t721 + gcross_vy_leg3 * t728),
-                gcross_vy_leg3 * t733 - minus_garm_vy_leg3 * t750,
-                -t699,
+                        * (5.444444444444445 * t601 - 17.36111111111111 * t624
+                            - 5.444444444444445 * t612),
+                0.8928571428571429 * t657
+                    - (minus_garm_vy_leg3 * t645 + gcross_vy_leg3 * t652),
+                gcross_vy_leg3 * t657 - minus_garm_vy_leg3 * t670,
+                -t624,
                 acceleration[1],
             ],
             [
-                -t61, minus_garm_vz_leg1 * t62, -(minus_garm_vz_leg1 * t66), -t61,
+                -t53, minus_garm_vz_leg1 * t54, -(minus_garm_vz_leg1 * t58), -t53,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t101, -(minus_gcross_vz_leg1 * t117),
-                -(minus_gcross_vz_leg1 * t135), -t147, -(minus_gcross_vz_leg1 * t148), 0.0,
-                t174
+                -(minus_minus_gcross_vz_leg1 * t88), minus_minus_gcross_vz_leg1 * t102,
+                minus_minus_gcross_vz_leg1 * t119, t128, minus_minus_gcross_vz_leg1 * t129, 0.0,
+                t154
                     + 0.10285714285714286
-                        * (17.36111111111111 * t175 + 5.444444444444445 * t147),
-                minus_gcross_vz_leg1 * t197 - minus_garm_vz_leg1 * t190,
-                -(minus_garm_vz_leg1 * t216 + minus_gcross_vz_leg1 * t205),
-                -t175,
-                -t308,
-                minus_garm_vz_leg2 * t309,
-                -(minus_garm_vz_leg2 * t313),
-                -t308,
+                        * (17.36111111111111 * t155 - 5.444444444444445 * t128),
+                -(minus_minus_gcross_vz_leg1 * t176 + minus_garm_vz_leg1 * t169),
+                -(minus_garm_vz_leg1 * t192 - minus_minus_gcross_vz_leg1 * t184),
+                -t155,
+                -t275,
+                minus_garm_vz_leg2 * t276,
+                -(minus_garm_vz_leg2 * t280),
+                -t275,
                 -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t352,
-                gcross_vz_leg2 * t374,
-                gcross_vz_leg2 * t394,
-                t411,
-                -(gcross_vz_leg2 * t412),
+                gcross_vz_leg2 * t313,
+                gcross_vz_leg2 * t332,
+                gcross_vz_leg2 * t351,
+                t365,
+                -(gcross_vz_leg2 * t366),
                 0.0,
-                t174
+                t154
                     - 0.10285714285714286
-                        * (5.444444444444445 * t411 - 17.36111111111111 * t442),
-                -(minus_garm_vz_leg2 * t463 + gcross_vz_leg2 * t468),
-                gcross_vz_leg2 * t451 - minus_garm_vz_leg2 * t486,
-                -t442,
-                -t573,
-                minus_garm_vz_leg3 * t574,
-                -(minus_garm_vz_leg3 * t578),
-                -t573,
+                        * (5.444444444444445 * t365 - 17.36111111111111 * t395),
+                -(minus_garm_vz_leg2 * t414 + gcross_vz_leg2 * t419),
+                gcross_vz_leg2 * t404 - minus_garm_vz_leg2 * t434,
+                -t395,
+                -t512,
+                minus_garm_vz_leg3 * t513,
+                -(minus_garm_vz_leg3 * t517),
+                -t512,
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
                 -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t617,
-                gcross_vz_leg3 * t639,
-                gcross_vz_leg3 * t659,
-                t676,
-                gcross_vz_leg3 * t677,
+                gcross_vz_leg3 * t550,
+                gcross_vz_leg3 * t569,
+                gcross_vz_leg3 * t588,
+                t602,
+                gcross_vz_leg3 * t603,
                 0.0,
-                t174
+                t154
                     - 0.10285714285714286
-                        * (5.444444444444445 * t676 - 17.36111111111111 * t707),
-                -(minus_garm_vz_leg3 * t721 + gcross_vz_leg3 * t728),
-                gcross_vz_leg3 * t733 - minus_garm_vz_leg3 * t750,
-                -t707,
-                t173,
+                        * (5.444444444444445 * t602 - 17.36111111111111 * t632),
+                -(minus_garm_vz_leg3 * t645 + gcross_vz_leg3 * t652),
+                gcross_vz_leg3 * t657 - minus_garm_vz_leg3 * t670,
+                -t632,
+                t153,
             ],
         ])
     }
@@ -2646,7 +2546,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 935 operations (311 additions, 606 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 807 intermediates.
+    /// 811 operations (260 additions, 533 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 684 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2657,561 +2557,530 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t9 = pose[1] * pose[1] + -0.3136;
+        let t10 = t4 + t9;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t9));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t43 = garm_vx_leg1 * actuator_accelerations[0];
-        let t44 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t44;
-        let t46 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t41 * t46;
-        let t48 = garm_vy_leg1 * actuator_accelerations[0];
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t37 = garm_vx_leg1 * actuator_accelerations[0];
+        let t38 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t38;
+        let t40 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t35 * t40;
+        let t42 = garm_vy_leg1 * actuator_accelerations[0];
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
-        let t53 = minus_garm_vz_leg1 * actuator_accelerations[0];
-        let t54 = 9.81 * c_arm_leg1;
-        let t58 = 9.81 * minus_s_arm_leg1;
-        let t62 = garm_vx_leg1 * actuator_velocities[0];
-        let t63 = garm_vy_leg1 * actuator_velocities[0];
-        let t64 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t68 = c_cross_leg1 * t40;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t68 + s_armcross_leg1);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let t47 = minus_garm_vz_leg1 * actuator_accelerations[0];
+        let t48 = 9.81 * c_arm_leg1;
+        let t52 = 9.81 * minus_s_arm_leg1;
+        let t56 = garm_vx_leg1 * actuator_velocities[0];
+        let t57 = garm_vy_leg1 * actuator_velocities[0];
+        let t58 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t62 = t34 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t62;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t75 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t78 = pose[0] - 0.025 + 0.1;
-        let t79 = 0.5 * t78;
-        let t80 = 0.8660254037844387 * t75 - t79;
-        let t83 = 0.2304 * (t80 * t80 + t3);
-        let t84 = t78 * t78;
-        let t87 = t84 + t75 * t75 + t3;
-        let t89 = t87 - 0.3136 + 0.0576;
-        let t91 = t83 - t89 * t89;
-        ::overact::guard::reach(t91, "leg2")?;
-        let t92 = ::overact::math::sqrt(t91);
-        let t94 = 0.8660254037844387 * t78;
-        let t96 = t94 + 0.5 * t75;
-        let t97 = t96 * t96;
-        let t99 = 1.0 - 3.188775510204082 * t97;
-        ::overact::guard::reach(t99, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t99);
+        let t66 = t0 + 0.025;
+        let t67 = t66 * t66;
+        let t69 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t73 = t67 + t69 * t69 + t3 + -0.3136;
+        let t76 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t78 = 0.8660254037844387 * t66 - 0.5 * t76;
+        let t79 = pose[1] + t78;
+        let t81 = 0.3136 - t79 * t79;
+        let t83 = 0.2304 * (t73 + t81);
+        let t84 = t73 + 0.0576;
+        let t86 = t83 - t84 * t84;
+        ::overact::guard::reach(t86, "leg2")?;
+        let t87 = ::overact::math::sqrt(t86);
+        let t88 = 3.188775510204082 * t81;
+        ::overact::guard::reach(t88, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t101 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t92 / t101;
+        let t90 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t87 / t90;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t103 = 1.0 / s_cross_leg2;
-        let t104 = 4.166666666666667 * t103;
-        let t105 = 1.0 / c_rod_leg2;
-        let t106 = 1.7857142857142858 * t105;
-        let t107 = t96 * t106;
-        let t109 = 1.0 / t83;
-        let t110 = 0.48 * t80;
-        let c_arm_leg2 = t109 * (t110 * t89 - t14 * t92);
-        let c_cross_leg2 = (t87 - (0.0576 + t97) - 0.3136 * t99) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t109 * (t14 * t89 + t110 * t92);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t128 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t104 * (0.8660254037844387 * t107 - t128);
-        let t134 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t136 = t79 + 0.8660254037844387 * t134;
-        let t139 = 0.2304 * (t136 * t136 + t3);
-        let t142 = t84 + t134 * t134 + t3;
-        let t144 = t142 - 0.3136 + 0.0576;
-        let t146 = t139 - t144 * t144;
-        ::overact::guard::reach(t146, "leg3")?;
-        let t147 = ::overact::math::sqrt(t146);
-        let t150 = t94 - 0.5 * t134;
-        let t151 = t150 * t150;
-        let t153 = 1.0 - 3.188775510204082 * t151;
-        ::overact::guard::reach(t153, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t153);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t155 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t147 / t155;
-        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t157 = 1.0 / s_cross_leg3;
-        let t158 = 4.166666666666667 * t157;
-        let t159 = 1.0 / t139;
-        let t160 = 0.48 * t136;
-        let minus_c_arm_leg3 = t159 * (t160 * t144 + t14 * t147);
-        let c_cross_leg3 = (t142 - (0.0576 + t151) - 0.3136 * t153)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t159 * (t160 * t147 - t14 * t144);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t178 = 0.5 * minus_c_armcross_leg3;
-        let t179 = 1.0 / c_rod_leg3;
-        let t180 = 1.7857142857142858 * t179;
-        let t181 = t150 * t180;
-        let garm_vx_leg3 = t158 * (t178 + 0.8660254037844387 * t181);
-        let t186 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t186, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t186, 14.869730172882841, "actuators")?;
-        let t187 = 1.0 / t186;
-        let t188 = 0.24 * c_cross_leg1;
-        let t189 = actuator_velocities[0] * actuator_velocities[0];
-        let t191 = garm_vx_leg2 * actuator_velocities[1];
-        let t193 = garm_vx_leg3 * actuator_velocities[2];
-        let t194 = t62 + t191 + t193;
-        let t197 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t104 * (t197 + 0.5 * t107);
-        let t203 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t158 * (t203 - 0.5 * t181);
-        let t208 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t209 = t208 * t187;
-        let t216 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t208 * t209;
-        ::overact::guard::platform(t216, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t216, 14.869730172882846, "actuators")?;
-        let t217 = 1.0 / t216;
-        let t218 = garm_vy_leg2 * actuator_velocities[1];
-        let t220 = garm_vy_leg3 * actuator_velocities[2];
-        let t223 = t63 + t218 + t220 - t194 * t209;
+        let t92 = 1.0 / s_cross_leg2;
+        let t93 = 4.166666666666667 * t92;
+        let t94 = 1.0 / t83;
+        let t97 = 0.5 * t66;
+        let t99 = 0.48 * (0.8660254037844387 * t69 - t97);
+        let minus_s_arm_leg2 = t94 * (t13 * t84 + t99 * t87);
+        let t103 = t92 * minus_s_arm_leg2;
+        let c_arm_leg2 = t94 * (t99 * t84 - t13 * t87);
+        let c_cross_leg2 = (-0.0576 + t73) / t90;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t104;
+        let t113 = c_cross_leg2 * t92;
+        let c_armcross_leg2 = t103 + s_armcross_leg2 * t113;
+        let t117 = 1.0 / c_rod_leg2;
+        let t118 = 1.7857142857142858 * t117;
+        let t119 = t79 * t118;
+        let t121 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t119;
+        let garm_vy_leg2 = t93 * t121;
+        let t128 = t67 + t76 * t76 + t3 + -0.3136;
+        let t130 = 0.3136 - t78 * t78;
+        let t132 = 0.2304 * (t128 + t130);
+        let t133 = t128 + 0.0576;
+        let t135 = t132 - t133 * t133;
+        ::overact::guard::reach(t135, "leg3")?;
+        let t136 = ::overact::math::sqrt(t135);
+        let t137 = 3.188775510204082 * t130;
+        ::overact::guard::reach(t137, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t137);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t139 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t136 / t139;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t141 = 1.0 / s_cross_leg3;
+        let t142 = 4.166666666666667 * t141;
+        let t143 = 1.0 / t132;
+        let t146 = 0.48 * (t97 + 0.8660254037844387 * t76);
+        let s_arm_leg3 = t143 * (t146 * t136 - t13 * t133);
+        let t151 = t141 * s_arm_leg3;
+        let c_cross_leg3 = (-0.0576 + t128) / t139;
+        let minus_c_arm_leg3 = t143 * (t146 * t133 + t13 * t136);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t158;
-        let t237 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t161 = c_cross_leg3 * t141;
+        let minus_c_armcross_leg3 = t151 - s_armcross_leg3 * t161;
+        let t165 = 1.0 / c_rod_leg3;
+        let t166 = 1.7857142857142858 * t165;
+        let t167 = t78 * t166;
+        let t169 = 0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t167;
+        let garm_vy_leg3 = t142 * t169;
+        let t176 = 0.8660254037844387 * t119 - 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t93 * t176;
+        let t182 = 0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t167;
+        let garm_vx_leg3 = t142 * t182;
+        let t185 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t190 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t190, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t190, 14.869730172882841, "actuators")?;
+        let t191 = 1.0 / t190;
+        let t192 = t185 * t191;
+        let t194 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t185 * t192;
+        ::overact::guard::platform(t194, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t194, 14.869730172882846, "actuators")?;
+        let t195 = 1.0 / t194;
+        let t196 = garm_vy_leg2 * actuator_velocities[1];
+        let t198 = garm_vy_leg3 * actuator_velocities[2];
+        let t200 = garm_vx_leg2 * actuator_velocities[1];
+        let t202 = garm_vx_leg3 * actuator_velocities[2];
+        let t203 = t56 + t200 + t202;
+        let t205 = t57 + t196 + t198 - t203 * t192;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t93;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t142;
+        let t213 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t238 = t237 * t187;
-        let t245 = t208 * t238
+        let t214 = t213 * t191;
+        let t221 = t185 * t214
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t246 = t245 * t217;
-        let t255 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t222 = t221 * t195;
+        let t231 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t237 * t238 - t245 * t246;
-        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
-        let t256 = 1.0 / t255;
-        let t258 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t260 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t265 = t256 * (t194 * t238 - (t64 + t258 + t260) - t246 * t223);
-        let t267 = t217 * t223 - t246 * t265;
-        let t271 = t194 * t187 - t209 * t267 + t238 * t265;
-        let t276 = t188 * garm_vy_leg1;
-        let t282 = t68 * (c_armcross_leg1 * t271 - s_armcross_leg1 * t265) + t276 * t267
-            + s_armcross_leg1 * t271 + c_armcross_leg1 * t265;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t282;
-        let t284 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t267;
-        let t286 = rate_rod_leg1 * rate_rod_leg1;
-        let t287 = t284 + t286;
-        let t289 = t188 * t189 + t36 * t287;
-        let t290 = pose[1] * minus_rate_cross_leg1;
-        let t291 = minus_rate_cross_leg1 * t290;
-        let t293 = t291 - pose[1] * t287;
-        let rate_dot_arm_leg1 = t41 * (t289 - t46 * t293);
-        let t297 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t299 = 0.24 * c_cross_leg2;
-        let t300 = actuator_velocities[1] * actuator_velocities[1];
-        let t302 = 0.8660254037844387 * t271;
-        let t303 = 0.5 * t267;
-        let t304 = t302 + t303;
-        let minus_rate_rod_leg2 = t106 * t304;
-        let t306 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t307 = 0.5 * s_armcross_leg2;
-        let t309 = 0.8660254037844387 * s_armcross_leg2;
-        let t314 = c_cross_leg2 * t103;
-        let t321 = t307 * t271 - t309 * t267 - c_armcross_leg2 * t265
-            - t314 * (t197 * t267 - t128 * t271 - s_armcross_leg2 * t265);
-        let t323 = t299 * (t104 * t107);
-        let t325 = t321 - t323 * t304;
-        let rate_cross_leg2 = t106 * t325;
-        let t327 = rate_cross_leg2 * rate_cross_leg2;
-        let t328 = t306 + t327;
-        let t330 = t299 * t300 + t101 * t328;
-        let t332 = t96 * rate_cross_leg2;
-        let t333 = rate_cross_leg2 * t332;
-        let t334 = t96 * t328 - t333;
-        let rate_dot_arm_leg2 = t104 * (t330 + t107 * t334);
-        let t338 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t341 = 0.24 * c_cross_leg3;
-        let t342 = actuator_velocities[2] * actuator_velocities[2];
-        let t344 = t302 - t303;
-        let rate_rod_leg3 = t180 * t344;
-        let t346 = rate_rod_leg3 * rate_rod_leg3;
-        let t347 = 0.5 * s_armcross_leg3;
-        let t349 = 0.8660254037844387 * s_armcross_leg3;
-        let t354 = c_cross_leg3 * t157;
-        let t361 = t347 * t271 + t349 * t267 + minus_c_armcross_leg3 * t265
-            - t354 * (t178 * t271 + t203 * t267 - s_armcross_leg3 * t265);
-        let t363 = t341 * (t158 * t181);
-        let t365 = t361 - t363 * t344;
-        let rate_cross_leg3 = t180 * t365;
-        let t367 = rate_cross_leg3 * rate_cross_leg3;
-        let t368 = t346 + t367;
-        let t370 = t341 * t342 + t155 * t368;
-        let t371 = t150 * rate_cross_leg3;
-        let t372 = rate_cross_leg3 * t371;
-        let t374 = t372 - t150 * t368;
-        let rate_dot_arm_leg3 = t158 * (t370 - t181 * t374);
-        let t378 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t380 = garm_vx_leg1 * t297 + garm_vx_leg2 * t338 + garm_vx_leg3 * t378;
-        let t388 = garm_vy_leg1 * t297 + garm_vy_leg2 * t338 + garm_vy_leg3 * t378
-            - t209 * t380;
-        let t399 = t256
-            * (t238 * t380
-                - (minus_garm_vz_leg1 * t297 + minus_garm_vz_leg2 * t338
-                    + minus_garm_vz_leg3 * t378) - t246 * t388);
-        let t401 = t217 * t388 - t246 * t399;
-        let t405 = t187 * t380 - t209 * t401 + t238 * t399;
-        let t411 = t401 - t293;
-        let t420 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t424 = t68 * (c_armcross_leg1 * t405 - s_armcross_leg1 * t399 + t289)
-            + t276 * t411 + s_armcross_leg1 * t405 + c_armcross_leg1 * t399
-            + 0.24 * s_cross_leg1 * t189 + t420 + t420;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t424;
-        let t426 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t428 = rate_rod_leg1 * (1.7857142857142858 * t282);
-        let t429 = t426 + t428;
-        let t432 = c_rod_leg1 * (1.7857142857142858 * t420);
-        let t433 = s_rod_leg1 * t429 + t432;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t276;
-        let t437 = 3.188775510204082 * t291;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t68);
-        let t443 = t420 - t424;
-        let t447 = t428 + t429;
-        let t449 = 3.188775510204082 * (pose[1] * (t420 + t443)) - c_rod_leg1 * t447;
-        let t451 = t290 * t290;
-        let t460 = 3.188775510204082 * (t282 * t290);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t411;
-        let t464 = 3.188775510204082 * t451;
-        let t467 = s_rod_leg1 * (t460 + rate_dot_rod_leg1) + c_rod_leg1 * (t286 - t464);
-        let t475 = t432 + c_rod_leg1 * (1.7857142857142858 * t443);
-        let t476 = minus_gcross_vx_leg1 * t475;
-        let t478 = t437 - minus_gcross_vy_leg1 * t475;
-        let t479 = minus_gcross_vz_leg1 * t475;
-        let t480 = 1.7857142857142858 * t401;
-        let t486 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t487 = 1.7857142857142858 * t405;
-        let t489 = 0.24 * actuator_accelerations[0] - t54;
-        let t490 = 0.24 * t489;
-        let t491 = garm_vx_leg1 * t490;
-        let t497 = garm_vy_leg1 * t490;
-        let t505 = t399 + 9.81;
-        let t506 = 1.7857142857142858 * t505;
-        let t507 = minus_garm_vz_leg1 * t490;
-        let t517 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t522 = 0.8928571428571429 * t17 * (t460 - rate_dot_rod_leg1)
-            + t517 * (t464 + t286) + t188 * t447;
-        let t526 = t58 - 0.24 * t189;
-        let t529 = s_rod_leg1 * (c_cross_leg1 * t489 - s_cross_leg1 * t526);
-        let t537 = c_cross_leg1 * t526 + s_cross_leg1 * t489;
-        let t548 = t188 * t284 - (1.594387755102041 * (t17 * t424) + t517 * t426);
-        let t558 = garm_vx_leg2 * actuator_accelerations[1];
-        let t559 = garm_vy_leg2 * actuator_accelerations[1];
-        let t560 = minus_garm_vz_leg2 * actuator_accelerations[1];
-        let t561 = 9.81 * c_arm_leg2;
-        let t565 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t106 * (t128 * t314 + t307 - 0.8660254037844387 * t323);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t96;
-        let t586 = t96 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t589 = t307 * t405 - t309 * t401 - c_armcross_leg2 * t399
-            - (0.24 * s_cross_leg2 * t300 - t586 - t586);
-        let t598 = 0.8660254037844387 * t405;
-        let t599 = 0.5 * t401;
-        let t600 = t598 + t599;
-        let t601 = t600 + t334;
-        let t603 = t589
-            - t314 * (t197 * t401 - t128 * t405 - s_armcross_leg2 * t399 + t330)
-            - t323 * t601;
-        let rate_dot_cross_leg2 = t106 * t603;
-        let t605 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t607 = minus_rate_rod_leg2 * (1.7857142857142858 * t325);
-        let t608 = t605 + t607;
-        let t611 = c_rod_leg2 * (1.7857142857142858 * t586);
-        let t612 = minus_s_rod_leg2 * t608 + t611;
-        let t614 = 2.76156059880242 * t333;
-        let minus_gcross_vy_leg2 = t106 * (t197 * t314 + t309 + 0.5 * t323);
-        let t622 = 1.594387755102041 * t333;
-        let gcross_vz_leg2 = t106 * (s_armcross_leg2 * t314 - c_armcross_leg2);
-        let t628 = t603 - t586;
-        let t632 = t607 + t608;
-        let t634 = 3.188775510204082 * (t96 * (t586 - t628)) - c_rod_leg2 * t632;
-        let t636 = t332 * t332;
-        let t639 = t105 * (t636 - t325 * t325);
-        let t647 = 3.188775510204082 * (t325 * t332);
-        let minus_rate_dot_rod_leg2 = t106 * t601;
-        let t651 = 3.188775510204082 * t636;
-        let t654 = minus_s_rod_leg2 * (t647 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t306 - t651);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t105;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t105;
-        let t666 = c_rod_leg2 * (1.7857142857142858 * t628) - t611;
-        let t668 = gcross_vx_leg2 * t666 + t614;
-        let t670 = t622 - minus_gcross_vy_leg2 * t666;
-        let t671 = gcross_vz_leg2 * t666;
-        let t672 = 1.7857142857142858 * t600;
-        let t680 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t681 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
-        let t683 = 0.24 * actuator_accelerations[1] - t561;
-        let t684 = 0.24 * t683;
-        let t685 = garm_vx_leg2 * t684;
-        let t693 = garm_vy_leg2 * t684;
-        let t702 = minus_garm_vz_leg2 * t684;
-        let t711 = 0.42857142857142855 * (t96 * s_cross_leg2);
-        let t716 = 0.8928571428571429 * t92 * (minus_rate_dot_rod_leg2 - t647)
-            - t711 * (t651 + t306) + t299 * t632;
-        let t720 = t565 - 0.24 * t300;
-        let t723 = minus_s_rod_leg2 * (c_cross_leg2 * t683 - s_cross_leg2 * t720);
-        let t728 = c_cross_leg2 * t720 + s_cross_leg2 * t683;
-        let t745 = 1.594387755102041 * (t92 * t603) + t711 * t605 + t299 * t327;
-        let t755 = garm_vx_leg3 * actuator_accelerations[2];
-        let t756 = garm_vy_leg3 * actuator_accelerations[2];
-        let t757 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t758 = 9.81 * minus_c_arm_leg3;
-        let t762 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t180 * (t347 - t178 * t354 - 0.8660254037844387 * t363);
-        let s_rod_leg3 = 1.7857142857142858 * t150;
-        let t783 = t150 * (rate_cross_leg3 * rate_rod_leg3);
-        let t786 = t347 * t405 + t349 * t401 + minus_c_armcross_leg3 * t399
-            - (0.24 * s_cross_leg3 * t342 - t783 - t783);
-        let t795 = t598 - t599;
-        let t796 = t795 - t374;
-        let t798 = t786
-            - t354 * (t178 * t405 + t203 * t401 - s_armcross_leg3 * t399 + t370)
-            - t363 * t796;
-        let rate_dot_cross_leg3 = t180 * t798;
-        let t800 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t802 = rate_rod_leg3 * (1.7857142857142858 * t365);
-        let t803 = t800 + t802;
-        let t806 = c_rod_leg3 * (1.7857142857142858 * t783);
-        let t807 = s_rod_leg3 * t803 + t806;
-        let t809 = 2.76156059880242 * t372;
-        let gcross_vy_leg3 = t180 * (t349 - t203 * t354 + 0.5 * t363);
-        let t817 = 1.594387755102041 * t372;
-        let gcross_vz_leg3 = t180 * (s_armcross_leg3 * t354 + minus_c_armcross_leg3);
-        let t823 = t802 + t803;
-        let t825 = t798 - t783;
-        let t829 = c_rod_leg3 * t823 - 3.188775510204082 * (t150 * (t783 - t825));
-        let t831 = t371 * t371;
-        let t834 = t179 * (t831 - t365 * t365);
-        let t842 = 3.188775510204082 * (t365 * t371);
-        let rate_dot_rod_leg3 = t180 * t796;
-        let t846 = 3.188775510204082 * t831;
-        let t849 = s_rod_leg3 * (t842 + rate_dot_rod_leg3) + c_rod_leg3 * (t346 - t846);
-        let grod_vx_leg3 = 1.5464739353293548 * t179;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t179;
-        let t861 = c_rod_leg3 * (1.7857142857142858 * t825) - t806;
-        let t863 = gcross_vx_leg3 * t861 + t809;
-        let t865 = gcross_vy_leg3 * t861 - t817;
-        let t866 = gcross_vz_leg3 * t861;
-        let t867 = 1.7857142857142858 * t795;
-        let t875 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t876 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t878 = t758 + 0.24 * actuator_accelerations[2];
-        let t879 = 0.24 * t878;
-        let t880 = garm_vx_leg3 * t879;
-        let t888 = garm_vy_leg3 * t879;
-        let t897 = minus_garm_vz_leg3 * t879;
-        let t906 = 0.42857142857142855 * (t150 * s_cross_leg3);
-        let t911 = 0.8928571428571429 * t147 * (t842 - rate_dot_rod_leg3)
-            + t906 * (t846 + t346) - t341 * t823;
-        let t914 = t762 + 0.24 * t342;
-        let t918 = s_rod_leg3 * (s_cross_leg3 * t914 + c_cross_leg3 * t878);
-        let t923 = s_cross_leg3 * t878 - c_cross_leg3 * t914;
-        let t940 = 1.594387755102041 * (t147 * t798) + t906 * t800 + t341 * t367;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t213 * t214 - t221 * t222;
+        ::overact::guard::platform(t231, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t231, 34.855350201355726, "actuators")?;
+        let t232 = 1.0 / t231;
+        let t234 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t236 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t241 = t232 * (t203 * t214 - (t58 + t234 + t236) - t222 * t205);
+        let t243 = t195 * t205 - t222 * t241;
+        let rate_rod_leg1 = grod_vy_leg1 * t243;
+        let t245 = 0.24 * c_cross_leg1;
+        let t251 = t203 * t191 - t192 * t243 + t214 * t241;
+        let t255 = actuator_velocities[0] * t245 + s_armcross_leg1 * t251
+            + c_armcross_leg1 * t241;
+        let t257 = rate_rod_leg1 * (1.7857142857142858 * t255);
+        let t258 = 0.24 * actuator_accelerations[0];
+        let t260 = actuator_velocities[0] * actuator_velocities[0];
+        let t262 = 0.56 * c_rod_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t255;
+        let t264 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t265 = rate_rod_leg1 * rate_rod_leg1;
+        let t269 = pose[1] * t265;
+        let rate_dot_arm_leg1 = t35 * (t245 * t260 + t262 * (t264 + t265) + t40 * t269);
+        let t273 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t275 = 0.24 * c_cross_leg2;
+        let t276 = actuator_velocities[1] * actuator_velocities[1];
+        let t279 = 0.8660254037844387 * t251;
+        let t280 = 0.5 * t243;
+        let minus_rate_rod_leg2 = t118 * (t279 + t280);
+        let t283 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t284 = 0.5 * s_armcross_leg2;
+        let t286 = 0.8660254037844387 * s_armcross_leg2;
+        let t292 = t284 * t251 - t286 * t243 - c_armcross_leg2 * t241
+            - actuator_velocities[1] * t275;
+        let rate_cross_leg2 = t118 * t292;
+        let t294 = rate_cross_leg2 * rate_cross_leg2;
+        let t298 = t79 * t283;
+        let rate_dot_arm_leg2 = t93
+            * (t275 * t276 + 0.56 * c_rod_leg2 * (t283 + t294) + t119 * t298);
+        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t305 = 0.24 * c_cross_leg3;
+        let t306 = actuator_velocities[2] * actuator_velocities[2];
+        let rate_rod_leg3 = t166 * (t279 - t280);
+        let t311 = rate_rod_leg3 * rate_rod_leg3;
+        let t312 = 0.5 * s_armcross_leg3;
+        let t314 = 0.8660254037844387 * s_armcross_leg3;
+        let t320 = t312 * t251 + t314 * t243 + minus_c_armcross_leg3 * t241
+            - actuator_velocities[2] * t305;
+        let rate_cross_leg3 = t166 * t320;
+        let t322 = rate_cross_leg3 * rate_cross_leg3;
+        let t326 = t78 * t311;
+        let rate_dot_arm_leg3 = t142
+            * (t305 * t306 + 0.56 * c_rod_leg3 * (t311 + t322) + t167 * t326);
+        let t330 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t332 = garm_vx_leg1 * t273 + garm_vx_leg2 * t302 + garm_vx_leg3 * t330;
+        let t340 = garm_vy_leg1 * t273 + garm_vy_leg2 * t302 + garm_vy_leg3 * t330
+            - t192 * t332;
+        let t351 = t232
+            * (t214 * t332
+                - (minus_garm_vz_leg1 * t273 + minus_garm_vz_leg2 * t302
+                    + minus_garm_vz_leg3 * t330) - t222 * t340);
+        let t353 = t195 * t340 - t222 * t351;
+        let t357 = t191 * t332 - t192 * t353 + t214 * t351;
+        let t361 = 0.24 * t260;
+        let t363 = pose[1] * minus_rate_cross_leg1;
+        let t364 = rate_rod_leg1 * t363;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t258 + s_armcross_leg1 * t357 + c_armcross_leg1 * t351
+                + s_cross_leg1 * t361 + t364 + t364);
+        let t370 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t372 = t257 + t370 + t257;
+        let t373 = s_rod_leg1 * t372;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t245 * garm_vy_leg1);
+        let t379 = 3.188775510204082 * (minus_rate_cross_leg1 * t363);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t62;
+        let t383 = t373 - minus_rate_dot_cross_leg1;
+        let t386 = t40 * t383 - c_rod_leg1 * t372;
+        let t388 = t363 * t363;
+        let t396 = t262 * t379;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t353 + t269);
+        let t401 = 3.188775510204082 * t388;
+        let t404 = s_rod_leg1 * (t396 + rate_dot_rod_leg1) + c_rod_leg1 * (t265 - t401);
+        let t410 = minus_gcross_vx_leg1 * t383;
+        let t412 = t379 - minus_gcross_vy_leg1 * t383;
+        let t413 = minus_gcross_vz_leg1 * t383;
+        let t414 = 1.7857142857142858 * t353;
+        let t420 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t421 = 1.7857142857142858 * t357;
+        let t422 = t258 - t48;
+        let t423 = 0.24 * t422;
+        let t424 = garm_vx_leg1 * t423;
+        let t430 = garm_vy_leg1 * t423;
+        let t438 = t351 + 9.81;
+        let t439 = 1.7857142857142858 * t438;
+        let t440 = minus_garm_vz_leg1 * t423;
+        let t446 = 0.8928571428571429 * t16;
+        let t454 = t446 * (t396 - rate_dot_rod_leg1) + t40 * t446 * (t401 + t265)
+            + t245 * t372;
+        let t457 = t52 - t361;
+        let t460 = s_rod_leg1 * (c_cross_leg1 * t422 - s_cross_leg1 * t457);
+        let t468 = c_cross_leg1 * t457 + s_cross_leg1 * t422;
+        let t477 = t245 * t264 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
+        let t487 = garm_vx_leg2 * actuator_accelerations[1];
+        let t488 = garm_vy_leg2 * actuator_accelerations[1];
+        let t489 = minus_garm_vz_leg2 * actuator_accelerations[1];
+        let t490 = 9.81 * c_arm_leg2;
+        let t494 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t118 * (t284 - t176 * t113);
+        let t505 = minus_rate_rod_leg2 * (1.7857142857142858 * t292);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t79;
+        let t512 = 0.24 * t276;
+        let t514 = t79 * rate_cross_leg2;
+        let t515 = minus_rate_rod_leg2 * t514;
+        let t519 = 0.24 * actuator_accelerations[1];
+        let t521 = t284 * t357 - t286 * t353 - c_armcross_leg2 * t351
+            - (s_cross_leg2 * t512 - t515 - t515) - c_cross_leg2 * t519;
+        let rate_dot_cross_leg2 = t118 * t521;
+        let t523 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t525 = t505 + t523 + t505;
+        let t526 = c_rod_leg2 * t525;
+        let t527 = t119 * t526;
+        let t529 = rate_cross_leg2 * t514;
+        let t530 = 2.76156059880242 * t529;
+        let minus_gcross_vy_leg2 = t118 * (t286 + t121 * t113);
+        let t536 = 1.594387755102041 * t529;
+        let minus_gcross_vz_leg2 = t118 * t103;
+        let t540 = rate_dot_cross_leg2 - t527;
+        let t542 = t119 * t540 + t526;
+        let t544 = t514 * t514;
+        let t547 = t117 * (t544 - t292 * t292);
+        let t555 = 3.188775510204082 * (t292 * t514);
+        let t556 = 0.8660254037844387 * t357;
+        let t557 = 0.5 * t353;
+        let t558 = t556 + t557;
+        let minus_rate_dot_rod_leg2 = t118 * (t558 + t298);
+        let t563 = 3.188775510204082 * t544;
+        let t566 = minus_s_rod_leg2 * (t555 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t283 - t563);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t117;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t117;
+        let t577 = gcross_vx_leg2 * t540 + t530;
+        let t579 = t536 - minus_gcross_vy_leg2 * t540;
+        let t580 = minus_gcross_vz_leg2 * t540;
+        let t581 = 1.7857142857142858 * t558;
+        let t589 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t590 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t591 = t519 - t490;
+        let t592 = 0.24 * t591;
+        let t593 = garm_vx_leg2 * t592;
+        let t601 = garm_vy_leg2 * t592;
+        let t610 = minus_garm_vz_leg2 * t592;
+        let t615 = 0.8928571428571429 * t87;
+        let t623 = t615 * (minus_rate_dot_rod_leg2 - t555) - t119 * t615 * (t563 + t283)
+            + t275 * t525;
+        let t626 = t494 - t512;
+        let t629 = minus_s_rod_leg2 * (c_cross_leg2 * t591 - s_cross_leg2 * t626);
+        let t634 = c_cross_leg2 * t626 + s_cross_leg2 * t591;
+        let t648 = rate_dot_cross_leg2 * (t87 * minus_grod_vy_leg2) + t275 * t294;
+        let t658 = garm_vx_leg3 * actuator_accelerations[2];
+        let t659 = garm_vy_leg3 * actuator_accelerations[2];
+        let t660 = minus_garm_vz_leg3 * actuator_accelerations[2];
+        let t661 = 9.81 * minus_c_arm_leg3;
+        let t665 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t166 * (t312 - t182 * t161);
+        let t676 = rate_rod_leg3 * (1.7857142857142858 * t320);
+        let s_rod_leg3 = 1.7857142857142858 * t78;
+        let t683 = 0.24 * t306;
+        let t685 = t78 * rate_cross_leg3;
+        let t686 = rate_rod_leg3 * t685;
+        let t690 = 0.24 * actuator_accelerations[2];
+        let t692 = t312 * t357 + t314 * t353 + minus_c_armcross_leg3 * t351
+            - (s_cross_leg3 * t683 - t686 - t686) - c_cross_leg3 * t690;
+        let rate_dot_cross_leg3 = t166 * t692;
+        let t694 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t696 = t676 + t694 + t676;
+        let t697 = c_rod_leg3 * t696;
+        let t698 = t167 * t697;
+        let t700 = rate_cross_leg3 * t685;
+        let t701 = 2.76156059880242 * t700;
+        let gcross_vy_leg3 = t166 * (t314 - t169 * t161);
+        let t707 = 1.594387755102041 * t700;
+        let gcross_vz_leg3 = t166 * t151;
+        let t711 = rate_dot_cross_leg3 - t698;
+        let t713 = t697 + t167 * t711;
+        let t715 = t685 * t685;
+        let t718 = t165 * (t715 - t320 * t320);
+        let t726 = 3.188775510204082 * (t320 * t685);
+        let t727 = t556 - t557;
+        let rate_dot_rod_leg3 = t166 * (t727 + t326);
+        let t732 = 3.188775510204082 * t715;
+        let t735 = s_rod_leg3 * (t726 + rate_dot_rod_leg3) + c_rod_leg3 * (t311 - t732);
+        let grod_vx_leg3 = 1.5464739353293548 * t165;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t165;
+        let t746 = gcross_vx_leg3 * t711 + t701;
+        let t748 = gcross_vy_leg3 * t711 - t707;
+        let t749 = gcross_vz_leg3 * t711;
+        let t750 = 1.7857142857142858 * t727;
+        let t758 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t759 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t760 = t661 + t690;
+        let t761 = 0.24 * t760;
+        let t762 = garm_vx_leg3 * t761;
+        let t770 = garm_vy_leg3 * t761;
+        let t779 = minus_garm_vz_leg3 * t761;
+        let t784 = 0.8928571428571429 * t136;
+        let t792 = t784 * (t726 - rate_dot_rod_leg3) + t167 * t784 * (t732 + t311)
+            - t305 * t696;
+        let t794 = t665 + t683;
+        let t798 = s_rod_leg3 * (s_cross_leg3 * t794 + c_cross_leg3 * t760);
+        let t803 = s_cross_leg3 * t760 - c_cross_leg3 * t794;
+        let t817 = rate_dot_cross_leg3 * (t136 * minus_grod_vy_leg3) + t305 * t322;
         Ok([
             [
-                t43, -(garm_vx_leg1 * t54), -(garm_vx_leg1 * t58), t43, t62,
+                t37, -(garm_vx_leg1 * t48), -(garm_vx_leg1 * t52), t37, t56,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t433, -(minus_gcross_vx_leg1 * t449),
-                -(minus_gcross_vx_leg1 * t467), -t476, -(minus_gcross_vx_leg1 * t480), 0.0,
-                t487
+                minus_gcross_vx_leg1 * t373, -(minus_gcross_vx_leg1 * t386),
+                -(minus_gcross_vx_leg1 * t404), -t410, -(minus_gcross_vx_leg1 * t414), 0.0,
+                t421
                     - 0.10285714285714286
-                        * (17.36111111111111 * t491 - 5.444444444444445 * t476),
-                garm_vx_leg1 * t522 + minus_gcross_vx_leg1 * t529,
-                garm_vx_leg1 * t548 - minus_gcross_vx_leg1 * t537,
-                t491,
-                t558,
-                -(garm_vx_leg2 * t561),
-                -(garm_vx_leg2 * t565),
-                t558,
-                t191,
+                        * (17.36111111111111 * t424 - 5.444444444444445 * t410),
+                garm_vx_leg1 * t454 + minus_gcross_vx_leg1 * t460,
+                garm_vx_leg1 * t477 - minus_gcross_vx_leg1 * t468,
+                t424,
+                t487,
+                -(garm_vx_leg2 * t490),
+                -(garm_vx_leg2 * t494),
+                t487,
+                t200,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 garm_vx_leg2,
-                gcross_vx_leg2 * t612 - t614,
-                gcross_vx_leg2 * t634 - 4.9313582121471775 * t639,
-                gcross_vx_leg2 * t654 + minus_grod_vx_leg2 * t605,
-                t668,
-                -(gcross_vx_leg2 * t672 + 1.5464739353293548 * rate_dot_cross_leg2),
-                t680,
-                t487
+                gcross_vx_leg2 * t527 - t530,
+                -(gcross_vx_leg2 * t542 + 4.9313582121471775 * t547),
+                gcross_vx_leg2 * t566 + minus_grod_vx_leg2 * t523,
+                t577,
+                -(gcross_vx_leg2 * t581 + 1.5464739353293548 * rate_dot_cross_leg2),
+                t589,
+                t421
                     - 0.10285714285714286
-                        * (17.36111111111111 * t685 + 5.444444444444445 * t668
-                            + 5.444444444444445 * t680),
-                garm_vx_leg2 * t716 + gcross_vx_leg2 * t723
-                    + minus_grod_vx_leg2 * (c_rod_leg2 * t728),
-                garm_vx_leg2 * t745 + gcross_vx_leg2 * t728,
-                t685,
-                t755,
-                garm_vx_leg3 * t758,
-                garm_vx_leg3 * t762,
-                t755,
-                t193,
+                        * (17.36111111111111 * t593 + 5.444444444444445 * t577
+                            + 5.444444444444445 * t589),
+                garm_vx_leg2 * t623 + gcross_vx_leg2 * t629 + 1.5464739353293548 * t634,
+                garm_vx_leg2 * t648 + gcross_vx_leg2 * t634,
+                t593,
+                t658,
+                garm_vx_leg3 * t661,
+                garm_vx_leg3 * t665,
+                t658,
+                t202,
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
                 garm_vx_leg3,
-                gcross_vx_leg3 * t807 - t809,
-                gcross_vx_leg3 * t829 + 4.9313582121471775 * t834,
-                gcross_vx_leg3 * t849 + grod_vx_leg3 * t800,
-                t863,
-                gcross_vx_leg3 * t867 + 1.5464739353293548 * rate_dot_cross_leg3,
-                t875,
-                t487
+                gcross_vx_leg3 * t698 - t701,
+                gcross_vx_leg3 * t713 + 4.9313582121471775 * t718,
+                gcross_vx_leg3 * t735 + grod_vx_leg3 * t694,
+                t746,
+                gcross_vx_leg3 * t750 + 1.5464739353293548 * rate_dot_cross_leg3,
+                t758,
+                t421
                     - 0.10285714285714286
-                        * (17.36111111111111 * t880 + 5.444444444444445 * t863
-                            + 5.444444444444445 * t875),
-                garm_vx_leg3 * t911 - gcross_vx_leg3 * t918
-                    - grod_vx_leg3 * (c_rod_leg3 * t923),
-                garm_vx_leg3 * t940 + gcross_vx_leg3 * t923,
-                t880,
-                t405,
+                        * (17.36111111111111 * t762 + 5.444444444444445 * t746
+                            + 5.444444444444445 * t758),
+                garm_vx_leg3 * t792 - gcross_vx_leg3 * t798 - 1.5464739353293548 * t803,
+                garm_vx_leg3 * t817 + gcross_vx_leg3 * t803,
+                t762,
+                t357,
             ],
             [
-                t48, -(garm_vy_leg1 * t54), -(garm_vy_leg1 * t58), t48, t63,
+                t42, -(garm_vy_leg1 * t48), -(garm_vy_leg1 * t52), t42, t57,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t433 - t437,
-                5.694241982507289 * (t44 * (t451 - t282 * t282))
-                    - minus_gcross_vy_leg1 * t449,
-                -(minus_gcross_vy_leg1 * t467 + grod_vy_leg1 * t426),
-                t478,
-                -(minus_gcross_vy_leg1 * t480
+                minus_gcross_vy_leg1 * t373 - t379,
+                5.694241982507289 * (t38 * (t388 - t255 * t255))
+                    - minus_gcross_vy_leg1 * t386,
+                -(minus_gcross_vy_leg1 * t404 + grod_vy_leg1 * t370),
+                t412,
+                -(minus_gcross_vy_leg1 * t414
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                t486,
-                t480
+                t420,
+                t414
                     - 0.10285714285714286
-                        * (17.36111111111111 * t497 + 5.444444444444445 * t478
-                            + 5.444444444444445 * t486),
-                garm_vy_leg1 * t522 + minus_gcross_vy_leg1 * t529
-                    - 1.7857142857142858 * t537,
-                garm_vy_leg1 * t548 - minus_gcross_vy_leg1 * t537,
-                t497,
-                t559,
-                -(garm_vy_leg2 * t561),
-                -(garm_vy_leg2 * t565),
-                t559,
-                t218,
+                        * (17.36111111111111 * t430 + 5.444444444444445 * t412
+                            + 5.444444444444445 * t420),
+                garm_vy_leg1 * t454 + minus_gcross_vy_leg1 * t460
+                    - 1.7857142857142858 * t468,
+                garm_vy_leg1 * t477 - minus_gcross_vy_leg1 * t468,
+                t430,
+                t488,
+                -(garm_vy_leg2 * t490),
+                -(garm_vy_leg2 * t494),
+                t488,
+                t196,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t612 + t622),
-                -(minus_gcross_vy_leg2 * t634 + 2.8471209912536444 * t639),
-                minus_grod_vy_leg2 * t605 - minus_gcross_vy_leg2 * t654,
-                t670,
-                minus_gcross_vy_leg2 * t672 - 0.8928571428571429 * rate_dot_cross_leg2,
-                t681,
-                t480
+                -(minus_gcross_vy_leg2 * t527 + t536),
+                -(2.8471209912536444 * t547 - minus_gcross_vy_leg2 * t542),
+                minus_grod_vy_leg2 * t523 - minus_gcross_vy_leg2 * t566,
+                t579,
+                minus_gcross_vy_leg2 * t581 - 0.8928571428571429 * rate_dot_cross_leg2,
+                t590,
+                t414
                     - 0.10285714285714286
-                        * (17.36111111111111 * t693 + 5.444444444444445 * t670
-                            + 5.444444444444445 * t681),
-                garm_vy_leg2 * t716 - minus_gcross_vy_leg2 * t723
-                    + 0.8928571428571429 * t728,
-                garm_vy_leg2 * t745 - minus_gcross_vy_leg2 * t728,
-                t693,
-                t756,
-                garm_vy_leg3 * t758,
-                garm_vy_leg3 * t762,
-                t756,
-                t220,
+                        * (17.36111111111111 * t601 + 5.444444444444445 * t579
+                            + 5.444444444444445 * t590),
+                garm_vy_leg2 * t623 - minus_gcross_vy_leg2 * t629
+                    + 0.8928571428571429 * t634,
+                garm_vy_leg2 * t648 - minus_gcross_vy_leg2 * t634,
+                t601,
+                t659,
+                garm_vy_leg3 * t661,
+                garm_vy_leg3 * t665,
+                t659,
+                t198,
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
                 garm_vy_leg3,
-                gcross_vy_leg3 * t807 + t817,
-                gcross_vy_leg3 * t829 - 2.8471209912536444 * t834,
-                gcross_vy_leg3 * t849 - minus_grod_vy_leg3 * t800,
-                t865,
-                gcross_vy_leg3 * t867 - 0.8928571428571429 * rate_dot_cross_leg3,
-                -t876,
-                t480
+                gcross_vy_leg3 * t698 + t707,
+                gcross_vy_leg3 * t713 - 2.8471209912536444 * t718,
+                gcross_vy_leg3 * t735 - minus_grod_vy_leg3 * t694,
+                t748,
+                gcross_vy_leg3 * t750 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -t759,
+                t414
                     - 0.10285714285714286
-                        * (17.36111111111111 * t888 + 5.444444444444445 * t865
-                            - 5.444444444444445 * t876),
-                garm_vy_leg3 * t911 - gcross_vy_leg3 * t918 + 0.8928571428571429 * t923,
-                garm_vy_leg3 * t940 + gcross_vy_leg3 * t923,
-                t888,
-                t401,
+                        * (17.36111111111111 * t770 + 5.444444444444445 * t748
+                            - 5.444444444444445 * t759),
+                garm_vy_leg3 * t792 - gcross_vy_leg3 * t798 + 0.8928571428571429 * t803,
+                garm_vy_leg3 * t817 + gcross_vy_leg3 * t803,
+                t770,
+                t353,
             ],
             [
-                -t53, minus_garm_vz_leg1 * t54, minus_garm_vz_leg1 * t58, -t53, -t64,
+                -t47, minus_garm_vz_leg1 * t48, minus_garm_vz_leg1 * t52, -t47, -t58,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
-                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t433, -(minus_gcross_vz_leg1 * t449),
-                -(minus_gcross_vz_leg1 * t467), -t479, -(minus_gcross_vz_leg1 * t480), 0.0,
-                t506
+                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t373, -(minus_gcross_vz_leg1 * t386),
+                -(minus_gcross_vz_leg1 * t404), -t413, -(minus_gcross_vz_leg1 * t414), 0.0,
+                t439
                     + 0.10285714285714286
-                        * (17.36111111111111 * t507 + 5.444444444444445 * t479),
-                minus_gcross_vz_leg1 * t529 - minus_garm_vz_leg1 * t522,
-                -(minus_garm_vz_leg1 * t548 + minus_gcross_vz_leg1 * t537),
-                -t507,
-                -t560,
-                minus_garm_vz_leg2 * t561,
-                minus_garm_vz_leg2 * t565,
-                -t560,
-                -t258,
+                        * (17.36111111111111 * t440 + 5.444444444444445 * t413),
+                minus_gcross_vz_leg1 * t460 - minus_garm_vz_leg1 * t454,
+                -(minus_garm_vz_leg1 * t477 + minus_gcross_vz_leg1 * t468),
+                -t440,
+                -t489,
+                minus_garm_vz_leg2 * t490,
+                minus_garm_vz_leg2 * t494,
+                -t489,
+                -t234,
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
                 -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t612,
-                gcross_vz_leg2 * t634,
-                gcross_vz_leg2 * t654,
-                t671,
-                -(gcross_vz_leg2 * t672),
+                -(minus_gcross_vz_leg2 * t527),
+                minus_gcross_vz_leg2 * t542,
+                -(minus_gcross_vz_leg2 * t566),
+                -t580,
+                minus_gcross_vz_leg2 * t581,
                 0.0,
-                t506
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t671 - 17.36111111111111 * t702),
-                gcross_vz_leg2 * t723 - minus_garm_vz_leg2 * t716,
-                gcross_vz_leg2 * t728 - minus_garm_vz_leg2 * t745,
-                -t702,
-                -t757,
-                -(minus_garm_vz_leg3 * t758),
-                -(minus_garm_vz_leg3 * t762),
-                -t757,
-                -t260,
+                t439
+                    + 0.10285714285714286
+                        * (5.444444444444445 * t580 + 17.36111111111111 * t610),
+                -(minus_gcross_vz_leg2 * t629 + minus_garm_vz_leg2 * t623),
+                -(minus_gcross_vz_leg2 * t634 + minus_garm_vz_leg2 * t648),
+                -t610,
+                -t660,
+                -(minus_garm_vz_leg3 * t661),
+                -(minus_garm_vz_leg3 * t665),
+                -t660,
+                -t236,
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
                 -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t807,
-                gcross_vz_leg3 * t829,
-                gcross_vz_leg3 * t849,
-                t866,
-                gcross_vz_leg3 * t867,
+                gcross_vz_leg3 * t698,
+                gcross_vz_leg3 * t713,
+                gcross_vz_leg3 * t735,
+                t749,
+                gcross_vz_leg3 * t750,
                 0.0,
-                t506
+                t439
                     - 0.10285714285714286
-                        * (5.444444444444445 * t866 - 17.36111111111111 * t897),
-                -(minus_garm_vz_leg3 * t911 + gcross_vz_leg3 * t918),
-                gcross_vz_leg3 * t923 - minus_garm_vz_leg3 * t940,
-                -t897,
-                t505,
+                        * (5.444444444444445 * t749 - 17.36111111111111 * t779),
+                -(minus_garm_vz_leg3 * t792 + gcross_vz_leg3 * t798),
+                gcross_vz_leg3 * t803 - minus_garm_vz_leg3 * t817,
+                -t779,
+                t438,
             ],
         ])
     }
@@ -3225,7 +3094,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 930 operations (322 additions, 592 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 837 intermediates.
+    /// 869 operations (299 additions, 554 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 776 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3234,394 +3103,387 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = pose[1] * pose[1];
-        let t8 = t2 + t6 + t3;
-        let t10 = t8 - 0.3136 + 0.0576;
-        let t12 = t5 - t10 * t10;
-        ::overact::guard::reach(t12, "leg1")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = 1.0 - 3.188775510204082 * t6;
-        ::overact::guard::reach(t16, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t16);
+        let t8 = t4 + t6 - 0.3136;
+        let t9 = t8 + 0.0576;
+        let t11 = t5 - t9 * t9;
+        ::overact::guard::reach(t11, "leg1")?;
+        let t12 = ::overact::math::sqrt(t11);
+        let t14 = 1.0 - 3.188775510204082 * t6;
+        ::overact::guard::reach(t14, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t14);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t18 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t13 / t18;
+        let t16 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t12 / t16;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t20 = 1.0 / s_cross_leg1;
-        let t21 = 4.166666666666667 * t20;
-        let t22 = 1.0 / t5;
-        let t23 = 0.48 * t1;
-        let t25 = 0.48 * pose[2];
-        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
-        let c_cross_leg1 = (t8 - (0.0576 + t6) - 0.3136 * t16) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
+        let t18 = 1.0 / s_cross_leg1;
+        let t19 = 4.166666666666667 * t18;
+        let t20 = 1.0 / t5;
+        let t21 = 0.48 * t1;
+        let t23 = 0.48 * pose[2];
+        let c_arm_leg1 = t20 * (t21 * t9 - t23 * t12);
+        let c_cross_leg1 = (t8 + -0.0576) / t16;
+        let minus_s_arm_leg1 = t20 * (t23 * t9 + t21 * t12);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t48 = 0.24 * c_cross_leg1;
-        let t51 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t42 = 0.24 * c_cross_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t53 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t21 * (t51 + t53 * twist[1]);
-        let t57 = rate_arm_leg1 * rate_arm_leg1;
-        let t59 = c_cross_leg1 * t20;
-        let garm_vy_leg1 = t21 * t53;
-        let t62 = t48 * garm_vy_leg1;
-        let t68 = t59 * t51 + t62 * twist[1] + s_armcross_leg1 * twist[0]
+        let t47 = pose[1] * grod_vy_leg1;
+        let t48 = t47 * twist[1];
+        let rate_arm_leg1 = t19
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t48);
+        let t51 = rate_arm_leg1 * rate_arm_leg1;
+        let t58 = t42 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t68;
-        let t70 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t58;
+        let t60 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t72 = rate_rod_leg1 * rate_rod_leg1;
-        let t73 = t70 + t72;
-        let t76 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t48 * t57 + t18 * t73;
-        let t77 = pose[1] * minus_rate_cross_leg1;
-        let t81 = acceleration[1] - (minus_rate_cross_leg1 * t77 - pose[1] * t73);
-        let rate_dot_arm_leg1 = t21 * (t76 + t53 * t81);
-        let t85 = 9.81 * c_arm_leg1;
-        let t86 = 9.81 * minus_s_arm_leg1;
-        let t89 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t92 = pose[0] - 0.025 + 0.1;
-        let t93 = 0.5 * t92;
-        let t94 = 0.8660254037844387 * t89 - t93;
-        let t97 = 0.2304 * (t94 * t94 + t3);
-        let t98 = 1.0 / t97;
-        let t99 = 0.48 * t94;
-        let t100 = t92 * t92;
-        let t103 = t100 + t89 * t89 + t3;
-        let t105 = t103 - 0.3136 + 0.0576;
-        let t108 = t97 - t105 * t105;
-        ::overact::guard::reach(t108, "leg2")?;
-        let t109 = ::overact::math::sqrt(t108);
-        let c_arm_leg2 = t98 * (t99 * t105 - t25 * t109);
-        let t114 = 0.8660254037844387 * t92;
-        let t116 = t114 + 0.5 * t89;
-        let t117 = t116 * t116;
-        let t119 = 1.0 - 3.188775510204082 * t117;
-        ::overact::guard::reach(t119, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t119);
+        let t62 = rate_rod_leg1 * rate_rod_leg1;
+        let t68 = acceleration[1] + pose[1] * t62;
+        let t70 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t42 * t51 + 0.56 * c_rod_leg1 * (t60 + t62) + t47 * t68;
+        let rate_dot_arm_leg1 = t19 * t70;
+        let t72 = 9.81 * c_arm_leg1;
+        let t73 = 9.81 * minus_s_arm_leg1;
+        let t75 = t0 + 0.025;
+        let t76 = t75 * t75;
+        let t78 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t81 = t76 + t78 * t78 + t3;
+        let t84 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t86 = 0.8660254037844387 * t75 - 0.5 * t84;
+        let t87 = pose[1] + t86;
+        let t88 = t87 * t87;
+        let t90 = 0.2304 * (t81 - t88);
+        let t91 = 1.0 / t90;
+        let t93 = 0.5 * t75;
+        let t95 = 0.48 * (0.8660254037844387 * t78 - t93);
+        let t96 = t81 - 0.3136;
+        let t97 = t96 + 0.0576;
+        let t100 = t90 - t97 * t97;
+        ::overact::guard::reach(t100, "leg2")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let c_arm_leg2 = t91 * (t95 * t97 - t23 * t101);
+        let t106 = 1.0 - 3.188775510204082 * t88;
+        ::overact::guard::reach(t106, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t106);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t121 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t109 / t121;
+        let t108 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t101 / t108;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t98 * (t25 * t105 + t99 * t109);
-        let c_cross_leg2 = (t103 - (0.0576 + t117) - 0.3136 * t119)
-            / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t91 * (t23 * t97 + t95 * t101);
+        let c_cross_leg2 = (-0.0576 + t96) / t108;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t136 = 1.0 / s_cross_leg2;
-        let t137 = 4.166666666666667 * t136;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t137;
-        let t140 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t142 = t93 + 0.8660254037844387 * t140;
-        let t145 = 0.2304 * (t142 * t142 + t3);
-        let t148 = t100 + t140 * t140 + t3;
-        let t150 = t148 - 0.3136 + 0.0576;
-        let t152 = t145 - t150 * t150;
-        ::overact::guard::reach(t152, "leg3")?;
-        let t153 = ::overact::math::sqrt(t152);
-        let t156 = t114 - 0.5 * t140;
-        let t157 = t156 * t156;
-        let t159 = 1.0 - 3.188775510204082 * t157;
-        ::overact::guard::reach(t159, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t159);
+        let t119 = 1.0 / s_cross_leg2;
+        let t120 = 4.166666666666667 * t119;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t120;
+        let t124 = t76 + t84 * t84 + t3;
+        let t125 = t86 * t86;
+        let t127 = 0.2304 * (t124 - t125);
+        let t128 = t124 - 0.3136;
+        let t129 = t128 + 0.0576;
+        let t131 = t127 - t129 * t129;
+        ::overact::guard::reach(t131, "leg3")?;
+        let t132 = ::overact::math::sqrt(t131);
+        let t134 = 1.0 - 3.188775510204082 * t125;
+        ::overact::guard::reach(t134, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t134);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t161 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t153 / t161;
+        let t136 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t132 / t136;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t163 = 1.0 / s_cross_leg3;
-        let t164 = 4.166666666666667 * t163;
-        let t165 = 1.0 / t145;
-        let t166 = 0.48 * t142;
-        let minus_c_arm_leg3 = t165 * (t166 * t150 + t25 * t153);
-        let c_cross_leg3 = (t148 - (0.0576 + t157) - 0.3136 * t159)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t165 * (t166 * t153 - t25 * t150);
+        let t138 = 1.0 / s_cross_leg3;
+        let t139 = 4.166666666666667 * t138;
+        let t140 = 1.0 / t127;
+        let t143 = 0.48 * (t93 + 0.8660254037844387 * t84);
+        let minus_c_arm_leg3 = t140 * (t143 * t129 + t23 * t132);
+        let c_cross_leg3 = (-0.0576 + t128) / t136;
+        let s_arm_leg3 = t140 * (t143 * t132 - t23 * t129);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t184 = 0.5 * minus_c_armcross_leg3;
-        let t185 = 1.0 / c_rod_leg3;
-        let t186 = 1.7857142857142858 * t185;
-        let t187 = t156 * t186;
-        let garm_vx_leg3 = t164 * (t184 + 0.8660254037844387 * t187);
-        let t192 = 1.0 / c_rod_leg2;
-        let t193 = 1.7857142857142858 * t192;
-        let t194 = t116 * t193;
+        let t157 = 0.5 * minus_c_armcross_leg3;
+        let t158 = 1.0 / c_rod_leg3;
+        let t159 = 1.7857142857142858 * t158;
+        let t160 = t86 * t159;
+        let garm_vx_leg3 = t139 * (t157 + 0.8660254037844387 * t160);
+        let t165 = 1.0 / c_rod_leg2;
+        let t166 = 1.7857142857142858 * t165;
+        let t167 = t87 * t166;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t199 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t137 * (0.8660254037844387 * t194 - t199);
+        let t172 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t120 * (0.8660254037844387 * t167 - t172);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t164;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t21;
-        let t210 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t164 * (t210 - 0.5 * t187);
-        let t215 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
-        let t217 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t137 * (t217 + 0.5 * t194);
-        let garm_vx_leg1 = c_armcross_leg1 * t21;
-        let t224 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t229 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t231 = garm_vx_leg2 * t215 - garm_vy_leg2 * t224 - minus_garm_vz_leg2 * t229;
-        ::overact::guard::platform(t231, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t231, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t231, 87.78853732233405, "kept actuators")?;
-        let t232 = 1.0 / t231;
-        let t233 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t232;
-        let t234 = grod_vy_leg1 * t233;
-        let t236 = 3.188775510204082 * (t68 * t77);
-        let t237 = t234 * t236;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t62;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t59 + s_armcross_leg1);
-        let t246 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t232;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t59);
-        let t255 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t232;
-        let t257 = minus_gcross_vy_leg1 * t233 - minus_gcross_vx_leg1 * t246
-            - minus_gcross_vz_leg1 * t255;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t139;
+        let garm_vy_leg1 = t19 * t47;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t19;
+        let t184 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t139 * (t184 - 0.5 * t160);
+        let t189 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let t191 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t120 * (t191 + 0.5 * t167);
+        let garm_vx_leg1 = c_armcross_leg1 * t19;
+        let t198 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t203 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t205 = garm_vx_leg2 * t189 - garm_vy_leg2 * t198 - minus_garm_vz_leg2 * t203;
+        ::overact::guard::platform(t205, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t205, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t205, 87.78853732233405, "kept actuators")?;
+        let t206 = 1.0 / t205;
+        let t207 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t206;
+        let t208 = grod_vy_leg1 * t207;
+        let t209 = pose[1] * minus_rate_cross_leg1;
+        let t211 = 3.188775510204082 * (t58 * t209);
+        let t212 = t208 * t211;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t42 * garm_vy_leg1);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t18 * c_arm_leg1);
+        let t221 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t206;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (t18 * minus_s_arm_leg1);
+        let t229 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t206;
+        let t231 = minus_gcross_vy_leg1 * t207 - minus_gcross_vx_leg1 * t221
+            - minus_gcross_vz_leg1 * t229;
+        let t233 = rate_rod_leg1 * (1.7857142857142858 * t58);
+        let t234 = 0.24 * rate_dot_arm_leg1;
+        let t239 = 0.24 * t51;
+        let t241 = t48 * minus_rate_cross_leg1;
+        let t245 = c_cross_leg1 * t234 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t239 + t241 + t241;
+        let t246 = 1.7857142857142858 * t245;
+        let t247 = t47 * t246;
+        let t249 = t233 + t247 + t233;
+        let t250 = c_rod_leg1 * t249;
+        let t251 = t47 * t250;
+        let t254 = t198 * t206;
+        let t255 = grod_vy_leg1 * t254;
+        let t256 = t255 * t211;
+        let t258 = t189 * t206;
+        let t261 = t203 * t206;
+        let t263 = minus_gcross_vy_leg1 * t254 - minus_gcross_vx_leg1 * t258
+            - minus_gcross_vz_leg1 * t261;
+        let t269 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t206;
+        let t274 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t206;
+        let t280 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t206;
+        let t282 = minus_gcross_vx_leg1 * t269 - minus_gcross_vy_leg1 * t274
+            + minus_gcross_vz_leg1 * t280;
+        let t284 = grod_vy_leg1 * t274;
+        let t285 = t284 * t211;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t268 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t272 = t59 * t76 + t62 * t81 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t57 + t268
-            + t268;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t272;
-        let t274 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t276 = rate_rod_leg1 * (1.7857142857142858 * t68);
-        let t277 = t274 + t276;
-        let t280 = c_rod_leg1 * (1.7857142857142858 * t268);
-        let t281 = s_rod_leg1 * t277 + t280;
-        let t284 = t224 * t232;
-        let t285 = grod_vy_leg1 * t284;
-        let t286 = t285 * t236;
-        let t288 = t215 * t232;
-        let t291 = t229 * t232;
-        let t293 = minus_gcross_vy_leg1 * t284 - minus_gcross_vx_leg1 * t288
-            - minus_gcross_vz_leg1 * t291;
-        let t299 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t232;
-        let t304 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t232;
-        let t310 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t232;
-        let t312 = minus_gcross_vx_leg1 * t299 - minus_gcross_vy_leg1 * t304
-            + minus_gcross_vz_leg1 * t310;
-        let t314 = grod_vy_leg1 * t304;
-        let t315 = t314 * t236;
-        let t317 = t268 - t272;
-        let t321 = t276 + t277;
-        let t323 = 3.188775510204082 * (pose[1] * (t268 + t317)) - c_rod_leg1 * t321;
-        let t325 = t77 * t77;
-        let t328 = 3.188775510204082 * (t325 - t68 * t68);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t81;
-        let t340 = 3.188775510204082 * t325;
-        let t343 = s_rod_leg1 * (t236 + rate_dot_rod_leg1) + c_rod_leg1 * (t72 - t340);
-        let t355 = t280 + c_rod_leg1 * (1.7857142857142858 * t317);
-        let t357 = t257 * t355 - t237;
-        let t359 = t293 * t355 - t286;
-        let t361 = t312 * t355 + t315;
-        let t362 = 1.7857142857142858 * acceleration[1];
-        let t364 = 1.7857142857142858 * t272;
-        let t373 = t234 * rate_dot_rod_leg1;
-        let t374 = t285 * rate_dot_rod_leg1;
-        let t375 = t314 * rate_dot_rod_leg1;
-        let t379 = acceleration[2] + 9.81;
-        let t381 = t246 * acceleration[0] - t233 * acceleration[1] + t255 * t379;
-        let t382 = 1.7857142857142858 * t381;
-        let t384 = 0.24 * rate_dot_arm_leg1 - t85;
-        let t396 = t288 * acceleration[0] - t284 * acceleration[1] + t291 * t379;
-        let t397 = 1.7857142857142858 * t396;
-        let t405 = t304 * acceleration[1] - t299 * acceleration[0] - t310 * t379;
-        let t406 = 1.7857142857142858 * t405;
-        let t414 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t422 = t86 - 0.24 * t57;
-        let t425 = s_rod_leg1 * (c_cross_leg1 * t384 - s_cross_leg1 * t422);
-        let t427 = 0.8928571428571429 * t13 * (t236 - rate_dot_rod_leg1)
-            + t414 * (t340 + t72) + t48 * t321 - t257 * t425;
-        let t430 = c_cross_leg1 * t422 + s_cross_leg1 * t384;
-        let t431 = c_rod_leg1 * t430;
-        let t456 = 0.24 * c_cross_leg2;
-        let t461 = t217 * twist[1] - t199 * twist[0] - s_armcross_leg2 * twist[2];
-        let t462 = 0.8660254037844387 * twist[0];
-        let t463 = 0.5 * twist[1];
-        let t464 = t462 + t463;
-        let rate_arm_leg2 = t137 * (t461 + t194 * t464);
-        let t468 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t193 * t464;
-        let t471 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t472 = 0.5 * s_armcross_leg2;
-        let t474 = 0.8660254037844387 * s_armcross_leg2;
-        let t479 = c_cross_leg2 * t136;
-        let t483 = t456 * (t137 * t194);
-        let t485 = t472 * twist[0] - t474 * twist[1] - c_armcross_leg2 * twist[2]
-            - t479 * t461 - t483 * t464;
-        let rate_cross_leg2 = t193 * t485;
-        let t487 = rate_cross_leg2 * rate_cross_leg2;
-        let t488 = t471 + t487;
-        let t491 = t217 * acceleration[1] - t199 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t456 * t468 + t121 * t488;
-        let t492 = 0.8660254037844387 * acceleration[0];
-        let t493 = 0.5 * acceleration[1];
-        let t494 = t492 + t493;
-        let t496 = t116 * rate_cross_leg2;
-        let t499 = t494 + t116 * t488 - rate_cross_leg2 * t496;
-        let rate_dot_arm_leg2 = t137 * (t491 + t194 * t499);
-        let t503 = 9.81 * c_arm_leg2;
-        let t504 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t193 * (t199 * t479 + t472 - 0.8660254037844387 * t483);
-        let minus_gcross_vy_leg2 = t193 * (t217 * t479 + t474 + 0.5 * t483);
-        let gcross_vz_leg2 = t193 * (s_armcross_leg2 * t479 - c_armcross_leg2);
-        let t523 = gcross_vx_leg2 * t246 + minus_gcross_vy_leg2 * t233
-            + gcross_vz_leg2 * t255;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t116;
-        let t533 = t116 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t536 = t472 * acceleration[0] - t474 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2]
-            - (0.24 * s_cross_leg2 * t468 - t533 - t533);
-        let t540 = t536 - t479 * t491 - t483 * t499;
-        let rate_dot_cross_leg2 = t193 * t540;
-        let t542 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t544 = minus_rate_rod_leg2 * (1.7857142857142858 * t485);
-        let t545 = t542 + t544;
-        let t548 = c_rod_leg2 * (1.7857142857142858 * t533);
-        let t549 = minus_s_rod_leg2 * t545 + t548;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t192;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t192;
-        let t555 = minus_grod_vy_leg2 * t233 - minus_grod_vx_leg2 * t246;
-        let t557 = 3.188775510204082 * (t485 * t496);
-        let t558 = t555 * t557;
-        let t564 = gcross_vx_leg2 * t288 + minus_gcross_vy_leg2 * t284
-            + gcross_vz_leg2 * t291;
-        let t568 = minus_grod_vy_leg2 * t284 - minus_grod_vx_leg2 * t288;
-        let t569 = t568 * t557;
-        let t573 = minus_grod_vx_leg2 * t299 - minus_grod_vy_leg2 * t304;
-        let t574 = t573 * t557;
-        let t579 = gcross_vx_leg2 * t299 + minus_gcross_vy_leg2 * t304
-            + gcross_vz_leg2 * t310;
-        let t582 = t540 - t533;
-        let t586 = t544 + t545;
-        let t588 = 3.188775510204082 * (t116 * (t533 - t582)) - c_rod_leg2 * t586;
-        let t590 = t496 * t496;
-        let t593 = 3.188775510204082 * (t590 - t485 * t485);
-        let minus_rate_dot_rod_leg2 = t193 * t499;
-        let t605 = 3.188775510204082 * t590;
-        let t608 = minus_s_rod_leg2 * (t557 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t471 - t605);
-        let t620 = c_rod_leg2 * (1.7857142857142858 * t582) - t548;
-        let t622 = t523 * t620 - t558;
-        let t624 = t564 * t620 - t569;
-        let t626 = t579 * t620 + t574;
-        let t627 = 1.7857142857142858 * t540;
-        let t629 = 1.7857142857142858 * t494;
-        let t638 = t555 * minus_rate_dot_rod_leg2;
-        let t639 = t568 * minus_rate_dot_rod_leg2;
-        let t640 = t573 * minus_rate_dot_rod_leg2;
-        let t645 = 0.24 * rate_dot_arm_leg2 - t503;
-        let t658 = t504 - 0.24 * t468;
-        let t661 = minus_s_rod_leg2 * (c_cross_leg2 * t645 - s_cross_leg2 * t658);
-        let t665 = c_cross_leg2 * t658 + s_cross_leg2 * t645;
-        let t666 = c_rod_leg2 * t665;
-        let t673 = 0.42857142857142855 * (t116 * s_cross_leg2);
-        let t680 = 0.8928571428571429 * t109 * (minus_rate_dot_rod_leg2 - t557)
-            - t673 * (t605 + t471) + t456 * t586 + t564 * t661;
-        let t702 = 0.24 * c_cross_leg3;
-        let t707 = t184 * twist[0] + t210 * twist[1] - s_armcross_leg3 * twist[2];
-        let t708 = t462 - t463;
-        let rate_arm_leg3 = t164 * (t707 + t187 * t708);
-        let t712 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t186 * t708;
-        let t715 = rate_rod_leg3 * rate_rod_leg3;
-        let t716 = 0.5 * s_armcross_leg3;
-        let t718 = 0.8660254037844387 * s_armcross_leg3;
-        let t723 = c_cross_leg3 * t163;
-        let t727 = t702 * (t164 * t187);
-        let t729 = t716 * twist[0] + t718 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t723 * t707 - t727 * t708;
-        let rate_cross_leg3 = t186 * t729;
-        let t731 = rate_cross_leg3 * rate_cross_leg3;
-        let t732 = t715 + t731;
-        let t735 = t184 * acceleration[0] + t210 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t702 * t712 + t161 * t732;
-        let t736 = t492 - t493;
-        let t737 = t156 * rate_cross_leg3;
-        let t741 = t736 - (rate_cross_leg3 * t737 - t156 * t732);
-        let rate_dot_arm_leg3 = t164 * (t735 + t187 * t741);
-        let t745 = 9.81 * minus_c_arm_leg3;
-        let t746 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t186 * (t716 - t184 * t723 - 0.8660254037844387 * t727);
-        let gcross_vy_leg3 = t186 * (t718 - t210 * t723 + 0.5 * t727);
-        let gcross_vz_leg3 = t186 * (s_armcross_leg3 * t723 + minus_c_armcross_leg3);
-        let t765 = gcross_vx_leg3 * t246 - gcross_vy_leg3 * t233 + gcross_vz_leg3 * t255;
-        let s_rod_leg3 = 1.7857142857142858 * t156;
-        let t775 = t156 * (rate_cross_leg3 * rate_rod_leg3);
-        let t778 = t716 * acceleration[0] + t718 * acceleration[1]
+        let t292 = s_rod_leg1 * t233 + c_rod_leg1 * (1.7857142857142858 * (t241 - t245));
+        let t294 = t47 * t292 - t250;
+        let t296 = t209 * t209;
+        let t299 = 3.188775510204082 * (t296 - t58 * t58);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t68;
+        let t311 = 3.188775510204082 * t296;
+        let t314 = s_rod_leg1 * (t211 + rate_dot_rod_leg1) + c_rod_leg1 * (t62 - t311);
+        let t325 = t231 * t292 - t212;
+        let t327 = t263 * t292 - t256;
+        let t329 = t282 * t292 + t285;
+        let t330 = 1.7857142857142858 * acceleration[1];
+        let t340 = t208 * rate_dot_rod_leg1;
+        let t341 = t255 * rate_dot_rod_leg1;
+        let t342 = t284 * rate_dot_rod_leg1;
+        let t346 = acceleration[2] + 9.81;
+        let t348 = t221 * acceleration[0] - t207 * acceleration[1] + t229 * t346;
+        let t349 = 1.7857142857142858 * t348;
+        let t350 = t234 - t72;
+        let t362 = t258 * acceleration[0] - t254 * acceleration[1] + t261 * t346;
+        let t363 = 1.7857142857142858 * t362;
+        let t371 = t274 * acceleration[1] - t269 * acceleration[0] - t280 * t346;
+        let t372 = 1.7857142857142858 * t371;
+        let t376 = 0.8928571428571429 * t12;
+        let t379 = t47 * t376;
+        let t386 = t73 - t239;
+        let t389 = s_rod_leg1 * (c_cross_leg1 * t350 - s_cross_leg1 * t386);
+        let t394 = c_cross_leg1 * t386 + s_cross_leg1 * t350;
+        let t395 = c_rod_leg1 * t394;
+        let t397 = t376 * (t211 - rate_dot_rod_leg1) + t379 * (t311 + t62) + t42 * t249
+            - t231 * t389 + t208 * t395;
+        let t419 = 0.24 * c_cross_leg2;
+        let t424 = t191 * twist[1] - t172 * twist[0] - s_armcross_leg2 * twist[2];
+        let t425 = 0.8660254037844387 * twist[0];
+        let t426 = 0.5 * twist[1];
+        let t427 = t425 + t426;
+        let t428 = t167 * t427;
+        let rate_arm_leg2 = t120 * (t424 + t428);
+        let t431 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t166 * t427;
+        let t435 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t436 = 0.5 * s_armcross_leg2;
+        let t438 = 0.8660254037844387 * s_armcross_leg2;
+        let t443 = c_cross_leg2 * t119;
+        let t446 = t167 * t443;
+        let t448 = t436 * twist[0] - t438 * twist[1] - c_armcross_leg2 * twist[2]
+            - t443 * t424 - t446 * t427;
+        let rate_cross_leg2 = t166 * t448;
+        let t450 = rate_cross_leg2 * rate_cross_leg2;
+        let t454 = t191 * acceleration[1] - t172 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t419 * t431
+            + 0.56 * c_rod_leg2 * (t435 + t450);
+        let t455 = 0.8660254037844387 * acceleration[0];
+        let t456 = 0.5 * acceleration[1];
+        let t457 = t455 + t456;
+        let t459 = t457 + t87 * t435;
+        let rate_dot_arm_leg2 = t120 * (t454 + t167 * t459);
+        let t463 = 9.81 * c_arm_leg2;
+        let t464 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t166 * (t172 * t443 + t436 - 0.8660254037844387 * t446);
+        let minus_gcross_vy_leg2 = t166 * (t191 * t443 + t438 + 0.5 * t446);
+        let minus_gcross_vz_leg2 = t166 * (minus_s_arm_leg2 * t119);
+        let t482 = gcross_vx_leg2 * t221 + minus_gcross_vy_leg2 * t207
+            - minus_gcross_vz_leg2 * t229;
+        let t484 = minus_rate_rod_leg2 * (1.7857142857142858 * t448);
+        let t490 = 0.24 * t431;
+        let t492 = t428 * rate_cross_leg2;
+        let t497 = t436 * acceleration[0] - t438 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t490 - t492 - t492)
+            - t443 * t454;
+        let t499 = t497 - t446 * t459;
+        let t500 = 1.7857142857142858 * t499;
+        let t501 = t167 * t500;
+        let t503 = t484 + t501 + t484;
+        let t504 = c_rod_leg2 * t503;
+        let t505 = t167 * t504;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t165;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t165;
+        let t511 = minus_grod_vy_leg2 * t207 - minus_grod_vx_leg2 * t221;
+        let t512 = t87 * rate_cross_leg2;
+        let t514 = 3.188775510204082 * (t448 * t512);
+        let t515 = t511 * t514;
+        let t521 = gcross_vx_leg2 * t258 + minus_gcross_vy_leg2 * t254
+            - minus_gcross_vz_leg2 * t261;
+        let t525 = minus_grod_vy_leg2 * t254 - minus_grod_vx_leg2 * t258;
+        let t526 = t525 * t514;
+        let t530 = minus_grod_vx_leg2 * t269 - minus_grod_vy_leg2 * t274;
+        let t531 = t530 * t514;
+        let t536 = gcross_vx_leg2 * t269 + minus_gcross_vy_leg2 * t274
+            - minus_gcross_vz_leg2 * t280;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t87;
+        let t544 = c_rod_leg2 * (1.7857142857142858 * (t499 - t492))
+            - minus_s_rod_leg2 * t484;
+        let t546 = t167 * t544 + t504;
+        let t548 = t512 * t512;
+        let t551 = 3.188775510204082 * (t548 - t448 * t448);
+        let minus_rate_dot_rod_leg2 = t166 * t459;
+        let t563 = 3.188775510204082 * t548;
+        let t566 = minus_s_rod_leg2 * (t514 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t435 - t563);
+        let t577 = t482 * t544 - t515;
+        let t579 = t521 * t544 - t526;
+        let t581 = t536 * t544 + t531;
+        let t583 = 1.7857142857142858 * t457;
+        let t592 = t511 * minus_rate_dot_rod_leg2;
+        let t593 = t525 * minus_rate_dot_rod_leg2;
+        let t594 = t530 * minus_rate_dot_rod_leg2;
+        let t599 = 0.24 * rate_dot_arm_leg2 - t463;
+        let t611 = t464 - t490;
+        let t614 = minus_s_rod_leg2 * (c_cross_leg2 * t599 - s_cross_leg2 * t611);
+        let t618 = c_cross_leg2 * t611 + s_cross_leg2 * t599;
+        let t619 = c_rod_leg2 * t618;
+        let t622 = 0.8928571428571429 * t101;
+        let t625 = t167 * t622;
+        let t634 = t622 * (minus_rate_dot_rod_leg2 - t514) - t625 * (t563 + t435)
+            + t419 * t503 + t521 * t614 - t525 * t619;
+        let t653 = 0.24 * c_cross_leg3;
+        let t658 = t157 * twist[0] + t184 * twist[1] - s_armcross_leg3 * twist[2];
+        let t659 = t425 - t426;
+        let t660 = t160 * t659;
+        let rate_arm_leg3 = t139 * (t658 + t660);
+        let t663 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t159 * t659;
+        let t667 = rate_rod_leg3 * rate_rod_leg3;
+        let t668 = 0.5 * s_armcross_leg3;
+        let t670 = 0.8660254037844387 * s_armcross_leg3;
+        let t675 = c_cross_leg3 * t138;
+        let t678 = t160 * t675;
+        let t680 = t668 * twist[0] + t670 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t675 * t658 - t678 * t659;
+        let rate_cross_leg3 = t159 * t680;
+        let t682 = rate_cross_leg3 * rate_cross_leg3;
+        let t686 = t157 * acceleration[0] + t184 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t653 * t663
+            + 0.56 * c_rod_leg3 * (t667 + t682);
+        let t687 = t455 - t456;
+        let t689 = t687 + t86 * t667;
+        let rate_dot_arm_leg3 = t139 * (t686 + t160 * t689);
+        let t693 = 9.81 * minus_c_arm_leg3;
+        let t694 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t159 * (t668 - t157 * t675 - 0.8660254037844387 * t678);
+        let gcross_vy_leg3 = t159 * (t670 - t184 * t675 + 0.5 * t678);
+        let gcross_vz_leg3 = t159 * (t138 * s_arm_leg3);
+        let t712 = gcross_vx_leg3 * t221 - gcross_vy_leg3 * t207 + gcross_vz_leg3 * t229;
+        let t714 = rate_rod_leg3 * (1.7857142857142858 * t680);
+        let t720 = 0.24 * t663;
+        let t722 = t660 * rate_cross_leg3;
+        let t727 = t668 * acceleration[0] + t670 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (0.24 * s_cross_leg3 * t712 - t775 - t775);
-        let t782 = t778 - t723 * t735 - t727 * t741;
-        let rate_dot_cross_leg3 = t186 * t782;
-        let t784 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t786 = rate_rod_leg3 * (1.7857142857142858 * t729);
-        let t787 = t784 + t786;
-        let t790 = c_rod_leg3 * (1.7857142857142858 * t775);
-        let t791 = s_rod_leg3 * t787 + t790;
-        let grod_vx_leg3 = 1.5464739353293548 * t185;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t185;
-        let t797 = grod_vx_leg3 * t246 + minus_grod_vy_leg3 * t233;
-        let t799 = 3.188775510204082 * (t729 * t737);
-        let t800 = t797 * t799;
-        let t806 = gcross_vx_leg3 * t288 - gcross_vy_leg3 * t284 + gcross_vz_leg3 * t291;
-        let t810 = grod_vx_leg3 * t288 + minus_grod_vy_leg3 * t284;
-        let t811 = t810 * t799;
-        let t817 = gcross_vy_leg3 * t304 - gcross_vx_leg3 * t299 - gcross_vz_leg3 * t310;
-        let t821 = grod_vx_leg3 * t299 + minus_grod_vy_leg3 * t304;
-        let t822 = t821 * t799;
-        let t824 = t786 + t787;
-        let t826 = t782 - t775;
-        let t830 = c_rod_leg3 * t824 - 3.188775510204082 * (t156 * (t775 - t826));
-        let t832 = t737 * t737;
-        let t835 = 3.188775510204082 * (t832 - t729 * t729);
-        let rate_dot_rod_leg3 = t186 * t741;
-        let t847 = 3.188775510204082 * t832;
-        let t850 = s_rod_leg3 * (t799 + rate_dot_rod_leg3) + c_rod_leg3 * (t715 - t847);
-        let t862 = c_rod_leg3 * (1.7857142857142858 * t826) - t790;
-        let t864 = t765 * t862 + t800;
-        let t866 = t806 * t862 + t811;
-        let t868 = t817 * t862 - t822;
-        let t869 = 1.7857142857142858 * t736;
-        let t871 = 1.7857142857142858 * t782;
-        let t880 = t797 * rate_dot_rod_leg3;
-        let t881 = t810 * rate_dot_rod_leg3;
-        let t882 = t821 * rate_dot_rod_leg3;
-        let t890 = t745 + 0.24 * rate_dot_arm_leg3;
-        let t899 = t746 + 0.24 * t712;
-        let t903 = s_rod_leg3 * (s_cross_leg3 * t899 + c_cross_leg3 * t890);
-        let t907 = s_cross_leg3 * t890 - c_cross_leg3 * t899;
-        let t908 = c_rod_leg3 * t907;
-        let t918 = 0.42857142857142855 * (t156 * s_cross_leg3);
-        let t925 = 0.8928571428571429 * t153 * (t799 - rate_dot_rod_leg3)
-            + t918 * (t847 + t715) - t702 * t824 - t817 * t903;
+            - (s_cross_leg3 * t720 - t722 - t722) - t675 * t686;
+        let t729 = t727 - t678 * t689;
+        let t730 = 1.7857142857142858 * t729;
+        let t731 = t160 * t730;
+        let t733 = t714 + t731 + t714;
+        let t734 = c_rod_leg3 * t733;
+        let t735 = t160 * t734;
+        let grod_vx_leg3 = 1.5464739353293548 * t158;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t158;
+        let t741 = grod_vx_leg3 * t221 + minus_grod_vy_leg3 * t207;
+        let t742 = t86 * rate_cross_leg3;
+        let t744 = 3.188775510204082 * (t680 * t742);
+        let t745 = t741 * t744;
+        let t751 = gcross_vx_leg3 * t258 - gcross_vy_leg3 * t254 + gcross_vz_leg3 * t261;
+        let t755 = grod_vx_leg3 * t258 + minus_grod_vy_leg3 * t254;
+        let t756 = t755 * t744;
+        let t762 = gcross_vy_leg3 * t274 - gcross_vx_leg3 * t269 - gcross_vz_leg3 * t280;
+        let t766 = grod_vx_leg3 * t269 + minus_grod_vy_leg3 * t274;
+        let t767 = t766 * t744;
+        let s_rod_leg3 = 1.7857142857142858 * t86;
+        let t774 = c_rod_leg3 * (1.7857142857142858 * (t729 - t722)) - s_rod_leg3 * t714;
+        let t776 = t734 + t160 * t774;
+        let t778 = t742 * t742;
+        let t781 = 3.188775510204082 * (t778 - t680 * t680);
+        let rate_dot_rod_leg3 = t159 * t689;
+        let t793 = 3.188775510204082 * t778;
+        let t796 = s_rod_leg3 * (t744 + rate_dot_rod_leg3) + c_rod_leg3 * (t667 - t793);
+        let t807 = t712 * t774 + t745;
+        let t809 = t751 * t774 + t756;
+        let t811 = t762 * t774 - t767;
+        let t812 = 1.7857142857142858 * t687;
+        let t822 = t741 * rate_dot_rod_leg3;
+        let t823 = t755 * rate_dot_rod_leg3;
+        let t824 = t766 * rate_dot_rod_leg3;
+        let t832 = t693 + 0.24 * rate_dot_arm_leg3;
+        let t840 = t694 + t720;
+        let t844 = s_rod_leg3 * (s_cross_leg3 * t840 + c_cross_leg3 * t832);
+        let t848 = s_cross_leg3 * t832 - c_cross_leg3 * t840;
+        let t849 = c_rod_leg3 * t848;
+        let t855 = 0.8928571428571429 * t132;
+        let t858 = t160 * t855;
+        let t867 = t855 * (t744 - rate_dot_rod_leg3) + t858 * (t793 + t667) - t653 * t733
+            - t762 * t844 + t766 * t849;
         Ok([
             [
-                rate_dot_arm_leg1, -t85, -t86, rate_dot_arm_leg1, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t237 - t257 * t281,
-                t257 * t323 - t234 * t328, t257 * t343 + t234 * t274, t357,
-                t257 * t362 + t234 * t364, -t373,
-                t382
+                rate_dot_arm_leg1, -t72, -t73, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t212 - t231 * t251,
+                t231 * t294 - t208 * t299, t231 * t314 + t208 * t247, t325,
+                t231 * t330 + t208 * t246, -t340,
+                t349
                     - 0.10285714285714286
-                        * (4.166666666666667 * t384 + 5.444444444444445 * t357
-                            - 5.444444444444445 * t373),
-                t427 + t234 * t431,
-                t48 * t70 - (1.594387755102041 * (t13 * t272) + t274 * t414)
-                    + t257 * t430,
-                0.24 * t384,
+                        * (4.166666666666667 * t350 + 5.444444444444445 * t325
+                            - 5.444444444444445 * t340),
+                t397,
+                t42 * t60 - (t246 * t376 + t247 * t379) + t231 * t394,
+                0.24 * t350,
                 0.0,
                 0.0,
                 0.0,
@@ -3629,15 +3491,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t523 * t549 + t558,
-                t523 * t588 + t555 * t593,
-                t523 * t608 - t555 * t542,
-                t622,
-                t555 * t627 - t523 * t629,
-                -t638,
-                t382 - 0.56 * (t622 - t638),
-                t523 * t661 - t555 * t666,
-                t523 * t665,
+                t482 * t505 + t515,
+                t511 * t551 - t482 * t546,
+                t482 * t566 - t511 * t501,
+                t577,
+                t511 * t500 - t482 * t583,
+                -t592,
+                t349 - 0.56 * (t577 - t592),
+                t482 * t614 - t511 * t619,
+                t482 * t618,
                 0.0,
                 0.0,
                 0.0,
@@ -3646,34 +3508,33 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t765 * t791 - t800,
-                t765 * t830 + t797 * t835,
-                t765 * t850 + t797 * t784,
-                t864,
-                t765 * t869 + t797 * t871,
-                t880,
-                t382 - 0.56 * (t864 + t880),
-                -(t765 * t903 + t797 * t908),
-                t765 * t907,
+                t712 * t735 - t745,
+                t712 * t776 + t741 * t781,
+                t712 * t796 + t741 * t731,
+                t807,
+                t712 * t812 + t741 * t730,
+                t822,
+                t349 - 0.56 * (t807 + t822),
+                -(t712 * t844 + t741 * t849),
+                t712 * t848,
                 0.0,
-                t381,
+                t348,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t286 - t293 * t281, t293 * t323 - t285 * t328,
-                t293 * t343 + t285 * t274, t359, t293 * t362 + t285 * t364, -t374,
-                t397 - 0.56 * (t359 - t374), t285 * t431 - t293 * t425, t293 * t430, 0.0,
-                rate_dot_arm_leg2, -t503, -t504, rate_dot_arm_leg2, rate_arm_leg2,
-                ::overact::math::sign(rate_arm_leg2), 1.0, t564 * t549 + t569,
-                t564 * t588 + t568 * t593, t564 * t608 - t568 * t542, t624,
-                t568 * t627 - t564 * t629, -t639,
-                t397
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t256 - t263 * t251, t263 * t294 - t255 * t299,
+                t263 * t314 + t255 * t247, t327, t263 * t330 + t255 * t246, -t341,
+                t363 - 0.56 * (t327 - t341), t255 * t395 - t263 * t389, t263 * t394, 0.0,
+                rate_dot_arm_leg2, -t463, -t464, rate_dot_arm_leg2, rate_arm_leg2,
+                ::overact::math::sign(rate_arm_leg2), 1.0, t521 * t505 + t526,
+                t525 * t551 - t521 * t546, t521 * t566 - t525 * t501, t579,
+                t525 * t500 - t521 * t583, -t593,
+                t363
                     - 0.10285714285714286
-                        * (4.166666666666667 * t645 + 5.444444444444445 * t624
-                            - 5.444444444444445 * t639),
-                t680 - t568 * t666,
-                1.594387755102041 * (t109 * t540) + t542 * t673 + t456 * t487
-                    + t564 * t665,
-                0.24 * t645,
+                        * (4.166666666666667 * t599 + 5.444444444444445 * t579
+                            - 5.444444444444445 * t593),
+                t634,
+                t500 * t622 + t501 * t625 + t419 * t450 + t521 * t618,
+                0.24 * t599,
                 0.0,
                 0.0,
                 0.0,
@@ -3681,38 +3542,37 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t806 * t791 - t811,
-                t806 * t830 + t810 * t835,
-                t806 * t850 + t810 * t784,
-                t866,
-                t806 * t869 + t810 * t871,
-                t881,
-                t397 - 0.56 * (t866 + t881),
-                -(t806 * t903 + t810 * t908),
-                t806 * t907,
+                t751 * t735 - t756,
+                t751 * t776 + t755 * t781,
+                t751 * t796 + t755 * t731,
+                t809,
+                t751 * t812 + t755 * t730,
+                t823,
+                t363 - 0.56 * (t809 + t823),
+                -(t751 * t844 + t755 * t849),
+                t751 * t848,
                 0.0,
-                t396,
+                t362,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t312 * t281 + t315), t312 * t323 + t314 * t328,
-                t312 * t343 - t314 * t274, t361, t312 * t362 - t314 * t364, t375,
-                t406 - 0.56 * (t361 + t375), -(t312 * t425 + t314 * t431), t312 * t430, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t574 - t579 * t549, t573 * t593 - t579 * t588,
-                -(t579 * t608 + t573 * t542), -t626, t579 * t629 + t573 * t627, -t640,
-                t406 + 0.56 * (t626 + t640), -(t579 * t661 + t573 * t666), -(t579 * t665), 0.0,
-                rate_dot_arm_leg3, t745, t746, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, t817 * t791 + t822,
-                t817 * t830 - t821 * t835, t817 * t850 - t821 * t784, t868,
-                t817 * t869 - t821 * t871, -t882,
-                t406
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t282 * t251 + t285), t282 * t294 + t284 * t299,
+                t282 * t314 - t284 * t247, t329, t282 * t330 - t284 * t246, t342,
+                t372 - 0.56 * (t329 + t342), -(t282 * t389 + t284 * t395), t282 * t394, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t531 - t536 * t505, t530 * t551 + t536 * t546,
+                -(t536 * t566 + t530 * t501), -t581, t536 * t583 + t530 * t500, -t594,
+                t372 + 0.56 * (t581 + t594), -(t536 * t614 + t530 * t619), -(t536 * t618), 0.0,
+                rate_dot_arm_leg3, t693, t694, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t762 * t735 + t767,
+                t762 * t776 - t766 * t781, t762 * t796 - t766 * t731, t811,
+                t762 * t812 - t766 * t730, -t824,
+                t372
                     - 0.10285714285714286
-                        * (4.166666666666667 * t890 + 5.444444444444445 * t868
-                            - 5.444444444444445 * t882),
-                t925 + t821 * t908,
-                1.594387755102041 * (t153 * t782) + t784 * t918 + t702 * t731
-                    + t817 * t907,
-                0.24 * t890,
-                t405,
+                        * (4.166666666666667 * t832 + 5.444444444444445 * t811
+                            - 5.444444444444445 * t824),
+                t867,
+                t730 * t855 + t731 * t858 + t653 * t682 + t762 * t848,
+                0.24 * t832,
+                t371,
             ],
         ])
     }
@@ -3727,7 +3587,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 818 operations (274 additions, 537 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 737 intermediates.
+    /// 774 operations (259 additions, 508 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 693 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3755,318 +3615,300 @@ impl Delta {
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
         let t15 = 0.24 * c_cross_leg1;
-        let t18 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let t21 = 1.0 / c_rod_leg1;
         let t22 = s_rod_leg1 * t21;
-        let rate_arm_leg1 = t3 * (t18 + t22 * twist[1]);
+        let t23 = t22 * twist[1];
+        let rate_arm_leg1 = t3
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t23);
         let t26 = rate_arm_leg1 * rate_arm_leg1;
         let grod_vy_leg1 = 1.7857142857142858 * t21;
-        let t30 = c_cross_leg1 * t2;
-        let garm_vy_leg1 = t3 * t22;
-        let t33 = t15 * garm_vy_leg1;
-        let t39 = t30 * t18 + t33 * twist[1] + s_armcross_leg1 * twist[0]
+        let t34 = t15 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t39;
-        let t41 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t34;
+        let t36 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t43 = rate_rod_leg1 * rate_rod_leg1;
-        let t44 = t41 + t43;
-        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t15 * t26 + 0.56 * c_rod_leg1 * t44;
-        let t48 = 0.56 * s_rod_leg1;
-        let t49 = t48 * minus_rate_cross_leg1;
-        let t53 = acceleration[1] - (minus_rate_cross_leg1 * t49 - t48 * t44);
-        let rate_dot_arm_leg1 = t3 * (t47 + t22 * t53);
-        let t57 = 9.81 * c_arm_leg1;
-        let t58 = 9.81 * s_arm_leg1;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t30 + s_armcross_leg1);
+        let t38 = rate_rod_leg1 * rate_rod_leg1;
+        let t44 = acceleration[1] + t23 * rate_rod_leg1;
+        let t46 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t15 * t26 + 0.56 * c_rod_leg1 * (t36 + t38) + t22 * t44;
+        let rate_dot_arm_leg1 = t3 * t46;
+        let t48 = 9.81 * c_arm_leg1;
+        let t49 = 9.81 * s_arm_leg1;
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t2 * c_arm_leg1);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t73 = 1.0 / s_cross_leg2;
-        let t74 = 4.166666666666667 * t73;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
-        let t78 = 1.0 / s_cross_leg3;
-        let t79 = 4.166666666666667 * t78;
+        let t63 = 1.0 / s_cross_leg2;
+        let t64 = 4.166666666666667 * t63;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t64;
+        let t68 = 1.0 / s_cross_leg3;
+        let t69 = 4.166666666666667 * t68;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t88 = 0.8660254037844387 * c_armcross_leg3;
-        let t91 = 1.0 / c_rod_leg3;
-        let t92 = s_rod_leg3 * t91;
-        let minus_garm_vy_leg3 = t79 * (t88 + 0.5 * t92);
-        let t97 = 0.8660254037844387 * c_armcross_leg2;
-        let t100 = 1.0 / c_rod_leg2;
-        let t101 = s_rod_leg2 * t100;
-        let garm_vy_leg2 = t74 * (t97 - 0.5 * t101);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t79;
-        let t107 = minus_garm_vz_leg2 * minus_garm_vy_leg3
+        let t78 = 0.8660254037844387 * c_armcross_leg3;
+        let t81 = 1.0 / c_rod_leg3;
+        let t82 = s_rod_leg3 * t81;
+        let minus_garm_vy_leg3 = t69 * (t78 + 0.5 * t82);
+        let t87 = 0.8660254037844387 * c_armcross_leg2;
+        let t90 = 1.0 / c_rod_leg2;
+        let t91 = s_rod_leg2 * t90;
+        let garm_vy_leg2 = t64 * (t87 - 0.5 * t91);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t69;
+        let t97 = minus_garm_vz_leg2 * minus_garm_vy_leg3
             + garm_vy_leg2 * minus_garm_vz_leg3;
         let garm_vx_leg1 = c_armcross_leg1 * t3;
-        let t111 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t79 * (0.8660254037844387 * t92 - t111);
-        let t115 = 0.5 * c_armcross_leg2;
-        let minus_garm_vx_leg2 = t74 * (t115 + 0.8660254037844387 * t101);
-        let t120 = minus_garm_vz_leg2 * garm_vx_leg3
+        let garm_vy_leg1 = t3 * t22;
+        let t102 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t69 * (0.8660254037844387 * t82 - t102);
+        let t106 = 0.5 * c_armcross_leg2;
+        let minus_garm_vx_leg2 = t64 * (t106 + 0.8660254037844387 * t91);
+        let t111 = minus_garm_vz_leg2 * garm_vx_leg3
             + minus_garm_vx_leg2 * minus_garm_vz_leg3;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t3;
-        let t126 = garm_vy_leg2 * garm_vx_leg3 - minus_garm_vx_leg2 * minus_garm_vy_leg3;
-        let t128 = garm_vx_leg1 * t107 + garm_vy_leg1 * t120 - minus_garm_vz_leg1 * t126;
-        ::overact::guard::platform(t128, 87.78853732246625, "kept actuators")?;
-        ::overact::guard::platform(t128, 87.78853732246625, "kept actuators")?;
-        ::overact::guard::platform(t128, 87.78853732246625, "kept actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = t107 * t129;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t33;
-        let t133 = t120 * t129;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t30);
-        let t139 = t126 * t129;
-        let t141 = minus_gcross_vx_leg1 * t130 + minus_gcross_vy_leg1 * t133
-            + minus_gcross_vz_leg1 * t139;
-        let t148 = 0.24 * s_cross_leg1;
-        let t151 = t48 * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t155 = t30 * t47 + t33 * t53 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t148 * t26 + t151 + t151;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t155;
-        let t157 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t159 = rate_rod_leg1 * (1.7857142857142858 * t39);
-        let t160 = t157 + t159;
-        let t163 = c_rod_leg1 * (1.7857142857142858 * t151);
-        let t164 = s_rod_leg1 * t160 + t163;
-        let t166 = grod_vy_leg1 * t133;
-        let t168 = 3.188775510204082 * (t39 * t49);
-        let t169 = t166 * t168;
-        let t174 = (minus_garm_vz_leg1 * garm_vx_leg3
-            - garm_vx_leg1 * minus_garm_vz_leg3) * t129;
-        let t175 = grod_vy_leg1 * t174;
-        let t176 = t175 * t168;
-        let t180 = (garm_vy_leg1 * minus_garm_vz_leg3
-            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t129;
-        let t187 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
-            * t129;
-        let t189 = minus_gcross_vx_leg1 * t180 + minus_gcross_vy_leg1 * t174
-            + minus_gcross_vz_leg1 * t187;
-        let t195 = (garm_vx_leg1 * minus_garm_vz_leg2
-            + minus_garm_vz_leg1 * minus_garm_vx_leg2) * t129;
-        let t196 = grod_vy_leg1 * t195;
-        let t197 = t196 * t168;
-        let t201 = (minus_garm_vz_leg1 * garm_vy_leg2
-            - garm_vy_leg1 * minus_garm_vz_leg2) * t129;
-        let t208 = (garm_vx_leg1 * garm_vy_leg2 + garm_vy_leg1 * minus_garm_vx_leg2)
-            * t129;
-        let t210 = minus_gcross_vx_leg1 * t201 + minus_gcross_vy_leg1 * t195
-            + minus_gcross_vz_leg1 * t208;
-        let t213 = t49 * t49;
-        let t216 = 3.188775510204082 * (t213 - t39 * t39);
-        let t218 = t151 - t155;
-        let t222 = t159 + t160;
-        let t224 = s_rod_leg1 * (1.7857142857142858 * (t151 + t218)) - c_rod_leg1 * t222;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t53;
-        let t236 = 3.188775510204082 * t213;
-        let t239 = s_rod_leg1 * (t168 + rate_dot_rod_leg1) + c_rod_leg1 * (t43 - t236);
-        let t251 = t163 + c_rod_leg1 * (1.7857142857142858 * t218);
-        let t253 = t169 - t141 * t251;
-        let t255 = t189 * t251 - t176;
-        let t257 = t210 * t251 - t197;
-        let t258 = 1.7857142857142858 * acceleration[1];
-        let t260 = 1.7857142857142858 * t155;
-        let t269 = t166 * rate_dot_rod_leg1;
-        let t270 = t175 * rate_dot_rod_leg1;
-        let t271 = t196 * rate_dot_rod_leg1;
-        let t275 = acceleration[2] + 9.81;
-        let t277 = t130 * acceleration[0] + t133 * acceleration[1] + t139 * t275;
-        let t278 = 1.7857142857142858 * t277;
-        let t280 = 0.24 * rate_dot_arm_leg1 - t57;
-        let t292 = t180 * acceleration[0] + t174 * acceleration[1] + t187 * t275;
-        let t293 = 1.7857142857142858 * t292;
-        let t301 = t201 * acceleration[0] + t195 * acceleration[1] + t208 * t275;
-        let t302 = 1.7857142857142858 * t301;
-        let t306 = s_cross_leg1 * c_rod_leg1;
-        let t310 = t148 * s_rod_leg1;
-        let t317 = t58 + 0.24 * t26;
-        let t321 = s_rod_leg1 * (s_cross_leg1 * t317 + c_cross_leg1 * t280);
-        let t323 = 0.24 * t306 * (t168 - rate_dot_rod_leg1) + t310 * (t236 + t43)
-            + t15 * t222 + t141 * t321;
-        let t326 = s_cross_leg1 * t280 - c_cross_leg1 * t317;
-        let t327 = c_rod_leg1 * t326;
-        let t352 = 0.24 * c_cross_leg2;
-        let t357 = t97 * twist[1] - t115 * twist[0] - s_armcross_leg2 * twist[2];
-        let t358 = 0.8660254037844387 * twist[0];
-        let t359 = 0.5 * twist[1];
-        let t360 = t358 + t359;
-        let rate_arm_leg2 = t74 * (t357 - t101 * t360);
-        let t364 = rate_arm_leg2 * rate_arm_leg2;
-        let t367 = 1.7857142857142858 * t100;
-        let minus_rate_rod_leg2 = t367 * t360;
-        let t369 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t370 = 0.5 * s_armcross_leg2;
-        let t372 = 0.8660254037844387 * s_armcross_leg2;
-        let t377 = c_cross_leg2 * t73;
-        let t381 = t352 * (t74 * t101);
-        let t383 = t370 * twist[0] - t372 * twist[1] - c_armcross_leg2 * twist[2]
-            - t377 * t357 + t381 * t360;
-        let rate_cross_leg2 = t367 * t383;
-        let t385 = rate_cross_leg2 * rate_cross_leg2;
-        let t386 = t369 + t385;
-        let t389 = t97 * acceleration[1] - t115 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t352 * t364 + 0.56 * c_rod_leg2 * t386;
-        let t390 = 0.8660254037844387 * acceleration[0];
-        let t391 = 0.5 * acceleration[1];
-        let t392 = t390 + t391;
-        let t393 = 0.56 * s_rod_leg2;
-        let t394 = t393 * rate_cross_leg2;
-        let t398 = t392 + rate_cross_leg2 * t394 - t393 * t386;
-        let rate_dot_arm_leg2 = t74 * (t389 - t101 * t398);
-        let t402 = 9.81 * c_arm_leg2;
-        let t403 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = t367 * (t115 * t377 + t370 + 0.8660254037844387 * t381);
-        let gcross_vy_leg2 = t367 * (0.5 * t381 - (t97 * t377 + t372));
-        let gcross_vz_leg2 = t367 * (s_armcross_leg2 * t377 - c_armcross_leg2);
-        let t422 = gcross_vx_leg2 * t130 + gcross_vy_leg2 * t133 + gcross_vz_leg2 * t139;
-        let t428 = 0.24 * s_cross_leg2;
-        let t431 = t393 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t436 = t370 * acceleration[0] - t372 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t428 * t364 + t431 + t431)
-            - t377 * t389;
-        let t438 = t436 + t381 * t398;
-        let rate_dot_cross_leg2 = t367 * t438;
-        let t440 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t442 = minus_rate_rod_leg2 * (1.7857142857142858 * t383);
-        let t443 = t440 - t442;
-        let t446 = c_rod_leg2 * (1.7857142857142858 * t431);
-        let t447 = s_rod_leg2 * t443 - t446;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t100;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t100;
-        let t453 = minus_grod_vx_leg2 * t130 + minus_grod_vy_leg2 * t133;
-        let t455 = 3.188775510204082 * (t383 * t394);
-        let t456 = t453 * t455;
-        let t462 = gcross_vx_leg2 * t180 + gcross_vy_leg2 * t174 + gcross_vz_leg2 * t187;
-        let t466 = minus_grod_vx_leg2 * t180 + minus_grod_vy_leg2 * t174;
-        let t467 = t466 * t455;
-        let t473 = gcross_vx_leg2 * t201 + gcross_vy_leg2 * t195 + gcross_vz_leg2 * t208;
-        let t477 = minus_grod_vx_leg2 * t201 + minus_grod_vy_leg2 * t195;
-        let t478 = t477 * t455;
-        let t480 = t438 + t431;
-        let t484 = t443 - t442;
-        let t486 = s_rod_leg2 * (1.7857142857142858 * (t431 + t480)) + c_rod_leg2 * t484;
-        let t488 = t394 * t394;
-        let t491 = 3.188775510204082 * (t488 - t383 * t383);
-        let minus_rate_dot_rod_leg2 = t367 * t398;
-        let t503 = 3.188775510204082 * t488;
-        let t506 = s_rod_leg2 * (t455 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t369 - t503);
-        let t518 = t446 + c_rod_leg2 * (1.7857142857142858 * t480);
-        let t520 = t422 * t518 - t456;
-        let t522 = t467 - t462 * t518;
-        let t524 = t478 - t473 * t518;
-        let t525 = 1.7857142857142858 * t392;
-        let t527 = 1.7857142857142858 * t438;
-        let t536 = t453 * minus_rate_dot_rod_leg2;
-        let t537 = t466 * minus_rate_dot_rod_leg2;
-        let t538 = t477 * minus_rate_dot_rod_leg2;
-        let t543 = 0.24 * rate_dot_arm_leg2 - t402;
-        let t556 = t403 + 0.24 * t364;
-        let t558 = s_cross_leg2 * t543 - c_cross_leg2 * t556;
-        let t559 = c_rod_leg2 * t558;
-        let t564 = s_rod_leg2 * (s_cross_leg2 * t556 + c_cross_leg2 * t543);
-        let t567 = s_cross_leg2 * c_rod_leg2;
-        let t571 = t428 * s_rod_leg2;
-        let t578 = 0.24 * t567 * (t455 + minus_rate_dot_rod_leg2) + t571 * (t503 + t369)
-            - t352 * t484 + t462 * t564;
-        let t595 = 0.24 * c_cross_leg3;
-        let t596 = t358 - t359;
-        let t602 = t111 * twist[0] + t88 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t79 * (t92 * t596 - t602);
-        let t605 = rate_arm_leg3 * rate_arm_leg3;
-        let t608 = 1.7857142857142858 * t91;
-        let rate_rod_leg3 = t608 * t596;
-        let t610 = rate_rod_leg3 * rate_rod_leg3;
-        let t611 = c_cross_leg3 * t78;
-        let t613 = 0.5 * s_armcross_leg3;
-        let t615 = 0.8660254037844387 * s_armcross_leg3;
-        let t622 = t595 * (t79 * t92);
-        let t624 = t611 * t602 + t613 * twist[0] + t615 * twist[1]
-            - c_armcross_leg3 * twist[2] - t622 * t596;
-        let rate_cross_leg3 = t608 * t624;
-        let t626 = rate_cross_leg3 * rate_cross_leg3;
-        let t627 = t610 + t626;
-        let t635 = t595 * t605 + 0.56 * c_rod_leg3 * t627
-            - (t111 * acceleration[0] + t88 * acceleration[1]
+        let t117 = garm_vy_leg2 * garm_vx_leg3 - minus_garm_vx_leg2 * minus_garm_vy_leg3;
+        let t119 = garm_vx_leg1 * t97 + garm_vy_leg1 * t111 - minus_garm_vz_leg1 * t117;
+        ::overact::guard::platform(t119, 87.78853732246625, "kept actuators")?;
+        ::overact::guard::platform(t119, 87.78853732246625, "kept actuators")?;
+        ::overact::guard::platform(t119, 87.78853732246625, "kept actuators")?;
+        let t120 = 1.0 / t119;
+        let t121 = t97 * t120;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t15 * garm_vy_leg1);
+        let t125 = t111 * t120;
+        let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t2 * s_arm_leg1);
+        let t130 = t117 * t120;
+        let t132 = minus_gcross_vx_leg1 * t121 + minus_gcross_vy_leg1 * t125
+            - minus_minus_gcross_vz_leg1 * t130;
+        let t134 = rate_rod_leg1 * (1.7857142857142858 * t34);
+        let t135 = 0.24 * rate_dot_arm_leg1;
+        let t140 = 0.24 * s_cross_leg1;
+        let t142 = t23 * minus_rate_cross_leg1;
+        let t146 = c_cross_leg1 * t135 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t140 * t26 + t142 + t142;
+        let t147 = 1.7857142857142858 * t146;
+        let t148 = t22 * t147;
+        let t150 = t134 + t148 + t134;
+        let t151 = s_rod_leg1 * t150;
+        let t153 = grod_vy_leg1 * t125;
+        let t154 = t22 * t34;
+        let t156 = 3.188775510204082 * (t34 * t154);
+        let t157 = t153 * t156;
+        let t162 = (minus_garm_vz_leg1 * garm_vx_leg3
+            - garm_vx_leg1 * minus_garm_vz_leg3) * t120;
+        let t163 = grod_vy_leg1 * t162;
+        let t164 = t163 * t156;
+        let t168 = (garm_vy_leg1 * minus_garm_vz_leg3
+            + minus_garm_vz_leg1 * minus_garm_vy_leg3) * t120;
+        let t175 = (garm_vx_leg1 * minus_garm_vy_leg3 + garm_vy_leg1 * garm_vx_leg3)
+            * t120;
+        let t177 = minus_gcross_vx_leg1 * t168 + minus_gcross_vy_leg1 * t162
+            - minus_minus_gcross_vz_leg1 * t175;
+        let t183 = (garm_vx_leg1 * minus_garm_vz_leg2
+            + minus_garm_vz_leg1 * minus_garm_vx_leg2) * t120;
+        let t184 = grod_vy_leg1 * t183;
+        let t185 = t184 * t156;
+        let t189 = (minus_garm_vz_leg1 * garm_vy_leg2
+            - garm_vy_leg1 * minus_garm_vz_leg2) * t120;
+        let t196 = (garm_vx_leg1 * garm_vy_leg2 + garm_vy_leg1 * minus_garm_vx_leg2)
+            * t120;
+        let t198 = minus_gcross_vx_leg1 * t189 + minus_gcross_vy_leg1 * t183
+            - minus_minus_gcross_vz_leg1 * t196;
+        let t201 = t154 * t154;
+        let t204 = 3.188775510204082 * (t201 - t34 * t34);
+        let t210 = s_rod_leg1 * t134 + c_rod_leg1 * (1.7857142857142858 * (t142 - t146));
+        let t213 = t22 * t210 - c_rod_leg1 * t150;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t44;
+        let t225 = 3.188775510204082 * t201;
+        let t228 = s_rod_leg1 * (t156 + rate_dot_rod_leg1) + c_rod_leg1 * (t38 - t225);
+        let t239 = t157 - t132 * t210;
+        let t241 = t177 * t210 - t164;
+        let t243 = t198 * t210 - t185;
+        let t244 = 1.7857142857142858 * acceleration[1];
+        let t254 = t153 * rate_dot_rod_leg1;
+        let t255 = t163 * rate_dot_rod_leg1;
+        let t256 = t184 * rate_dot_rod_leg1;
+        let t260 = acceleration[2] + 9.81;
+        let t262 = t121 * acceleration[0] + t125 * acceleration[1] + t130 * t260;
+        let t263 = 1.7857142857142858 * t262;
+        let t264 = t135 - t48;
+        let t276 = t168 * acceleration[0] + t162 * acceleration[1] + t175 * t260;
+        let t277 = 1.7857142857142858 * t276;
+        let t285 = t189 * acceleration[0] + t183 * acceleration[1] + t196 * t260;
+        let t286 = 1.7857142857142858 * t285;
+        let t290 = c_rod_leg1 * t140;
+        let t293 = t140 * s_rod_leg1;
+        let t300 = t49 + 0.24 * t26;
+        let t304 = s_rod_leg1 * (s_cross_leg1 * t300 + c_cross_leg1 * t264);
+        let t309 = s_cross_leg1 * t264 - c_cross_leg1 * t300;
+        let t310 = c_rod_leg1 * t309;
+        let t312 = t290 * (t156 - rate_dot_rod_leg1) + t293 * (t225 + t38) + t15 * t150
+            + t132 * t304 - t153 * t310;
+        let t334 = 0.24 * c_cross_leg2;
+        let t339 = t87 * twist[1] - t106 * twist[0] - s_armcross_leg2 * twist[2];
+        let t340 = 0.8660254037844387 * twist[0];
+        let t341 = 0.5 * twist[1];
+        let t342 = t340 + t341;
+        let t343 = t91 * t342;
+        let rate_arm_leg2 = t64 * (t339 - t343);
+        let t346 = rate_arm_leg2 * rate_arm_leg2;
+        let t349 = 1.7857142857142858 * t90;
+        let minus_rate_rod_leg2 = t349 * t342;
+        let t351 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t352 = 0.5 * s_armcross_leg2;
+        let t354 = 0.8660254037844387 * s_armcross_leg2;
+        let t359 = c_cross_leg2 * t63;
+        let t362 = t91 * t359;
+        let t364 = t352 * twist[0] - t354 * twist[1] - c_armcross_leg2 * twist[2]
+            - t359 * t339 + t362 * t342;
+        let rate_cross_leg2 = t349 * t364;
+        let t366 = rate_cross_leg2 * rate_cross_leg2;
+        let t370 = t87 * acceleration[1] - t106 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t334 * t346
+            + 0.56 * c_rod_leg2 * (t351 + t366);
+        let t371 = 0.8660254037844387 * acceleration[0];
+        let t372 = 0.5 * acceleration[1];
+        let t373 = t371 + t372;
+        let t375 = t373 - t343 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t64 * (t370 - t91 * t375);
+        let t379 = 9.81 * c_arm_leg2;
+        let t380 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t349 * (t106 * t359 + t352 + 0.8660254037844387 * t362);
+        let gcross_vy_leg2 = t349 * (0.5 * t362 - (t87 * t359 + t354));
+        let gcross_vz_leg2 = t349 * (t63 * s_arm_leg2);
+        let t398 = gcross_vx_leg2 * t121 + gcross_vy_leg2 * t125 + gcross_vz_leg2 * t130;
+        let t404 = 0.24 * s_cross_leg2;
+        let t406 = t343 * rate_cross_leg2;
+        let t411 = t352 * acceleration[0] - t354 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t404 * t346 + t406 + t406)
+            - t359 * t370;
+        let t413 = t411 + t362 * t375;
+        let t414 = 1.7857142857142858 * t413;
+        let t415 = t91 * t414;
+        let t417 = minus_rate_rod_leg2 * (1.7857142857142858 * t364);
+        let t419 = t415 - t417 - t417;
+        let t420 = s_rod_leg2 * t419;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t90;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t90;
+        let t426 = minus_grod_vx_leg2 * t121 + minus_grod_vy_leg2 * t125;
+        let t427 = t91 * t364;
+        let t429 = 3.188775510204082 * (t364 * t427);
+        let t430 = t426 * t429;
+        let t436 = gcross_vx_leg2 * t168 + gcross_vy_leg2 * t162 + gcross_vz_leg2 * t175;
+        let t440 = minus_grod_vx_leg2 * t168 + minus_grod_vy_leg2 * t162;
+        let t441 = t440 * t429;
+        let t447 = gcross_vx_leg2 * t189 + gcross_vy_leg2 * t183 + gcross_vz_leg2 * t196;
+        let t451 = minus_grod_vx_leg2 * t189 + minus_grod_vy_leg2 * t183;
+        let t452 = t451 * t429;
+        let t458 = s_rod_leg2 * t417 + c_rod_leg2 * (1.7857142857142858 * (t413 + t406));
+        let t461 = t91 * t458 + c_rod_leg2 * t419;
+        let t463 = t427 * t427;
+        let t466 = 3.188775510204082 * (t463 - t364 * t364);
+        let minus_rate_dot_rod_leg2 = t349 * t375;
+        let t478 = 3.188775510204082 * t463;
+        let t481 = s_rod_leg2 * (t429 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t351 - t478);
+        let t492 = t398 * t458 - t430;
+        let t494 = t441 - t436 * t458;
+        let t496 = t452 - t447 * t458;
+        let t497 = 1.7857142857142858 * t373;
+        let t507 = t426 * minus_rate_dot_rod_leg2;
+        let t508 = t440 * minus_rate_dot_rod_leg2;
+        let t509 = t451 * minus_rate_dot_rod_leg2;
+        let t514 = 0.24 * rate_dot_arm_leg2 - t379;
+        let t527 = t380 + 0.24 * t346;
+        let t529 = s_cross_leg2 * t514 - c_cross_leg2 * t527;
+        let t530 = c_rod_leg2 * t529;
+        let t535 = s_rod_leg2 * (s_cross_leg2 * t527 + c_cross_leg2 * t514);
+        let t538 = c_rod_leg2 * t404;
+        let t541 = t404 * s_rod_leg2;
+        let t550 = t538 * (t429 + minus_rate_dot_rod_leg2) + t541 * (t478 + t351)
+            - t334 * t419 + t436 * t535 - t440 * t530;
+        let t564 = 0.24 * c_cross_leg3;
+        let t565 = t340 - t341;
+        let t566 = t82 * t565;
+        let t571 = t102 * twist[0] + t78 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t69 * (t566 - t571);
+        let t574 = rate_arm_leg3 * rate_arm_leg3;
+        let t577 = 1.7857142857142858 * t81;
+        let rate_rod_leg3 = t577 * t565;
+        let t579 = rate_rod_leg3 * rate_rod_leg3;
+        let t580 = c_cross_leg3 * t68;
+        let t582 = 0.5 * s_armcross_leg3;
+        let t584 = 0.8660254037844387 * s_armcross_leg3;
+        let t590 = t82 * t580;
+        let t592 = t580 * t571 + t582 * twist[0] + t584 * twist[1]
+            - c_armcross_leg3 * twist[2] - t590 * t565;
+        let rate_cross_leg3 = t577 * t592;
+        let t594 = rate_cross_leg3 * rate_cross_leg3;
+        let t603 = t564 * t574 + 0.56 * c_rod_leg3 * (t579 + t594)
+            - (t102 * acceleration[0] + t78 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t636 = t390 - t391;
-        let t637 = 0.56 * s_rod_leg3;
-        let t638 = t637 * rate_cross_leg3;
-        let t642 = t636 - (rate_cross_leg3 * t638 - t637 * t627);
-        let rate_dot_arm_leg3 = t79 * (t635 + t92 * t642);
-        let t646 = 9.81 * c_arm_leg3;
-        let t647 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t608 * (t111 * t611 + t613 - 0.8660254037844387 * t622);
-        let gcross_vy_leg3 = t608 * (t88 * t611 + t615 + 0.5 * t622);
-        let gcross_vz_leg3 = t608 * (s_armcross_leg3 * t611 - c_armcross_leg3);
-        let t666 = gcross_vx_leg3 * t130 + gcross_vy_leg3 * t133 + gcross_vz_leg3 * t139;
-        let t672 = 0.24 * s_cross_leg3;
-        let t675 = t637 * (rate_cross_leg3 * rate_rod_leg3);
-        let t680 = t613 * acceleration[0] + t615 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t672 * t605 - t675 - t675)
-            - t611 * t635;
-        let t682 = t680 - t622 * t642;
-        let rate_dot_cross_leg3 = t608 * t682;
-        let t684 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t686 = rate_rod_leg3 * (1.7857142857142858 * t624);
-        let t687 = t684 + t686;
-        let t690 = c_rod_leg3 * (1.7857142857142858 * t675);
-        let t691 = s_rod_leg3 * t687 + t690;
-        let grod_vx_leg3 = 1.5464739353293548 * t91;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t91;
-        let t697 = grod_vx_leg3 * t130 - minus_grod_vy_leg3 * t133;
-        let t699 = 3.188775510204082 * (t624 * t638);
-        let t700 = t697 * t699;
-        let t706 = gcross_vx_leg3 * t180 + gcross_vy_leg3 * t174 + gcross_vz_leg3 * t187;
-        let t710 = minus_grod_vy_leg3 * t174 - grod_vx_leg3 * t180;
-        let t711 = t710 * t699;
-        let t717 = gcross_vx_leg3 * t201 + gcross_vy_leg3 * t195 + gcross_vz_leg3 * t208;
-        let t721 = minus_grod_vy_leg3 * t195 - grod_vx_leg3 * t201;
-        let t722 = t721 * t699;
-        let t724 = t686 + t687;
-        let t726 = t682 - t675;
-        let t730 = c_rod_leg3 * t724 - s_rod_leg3 * (1.7857142857142858 * (t675 - t726));
-        let t732 = t638 * t638;
-        let t735 = 3.188775510204082 * (t732 - t624 * t624);
-        let rate_dot_rod_leg3 = t608 * t642;
-        let t747 = 3.188775510204082 * t732;
-        let t750 = s_rod_leg3 * (t699 + rate_dot_rod_leg3) + c_rod_leg3 * (t610 - t747);
-        let t762 = c_rod_leg3 * (1.7857142857142858 * t726) - t690;
-        let t764 = t666 * t762 + t700;
-        let t766 = t711 - t706 * t762;
-        let t768 = t722 - t717 * t762;
-        let t769 = 1.7857142857142858 * t636;
-        let t771 = 1.7857142857142858 * t682;
-        let t780 = t697 * rate_dot_rod_leg3;
-        let t781 = t710 * rate_dot_rod_leg3;
-        let t782 = t721 * rate_dot_rod_leg3;
-        let t790 = 0.24 * rate_dot_arm_leg3 - t646;
-        let t799 = t647 + 0.24 * t605;
-        let t803 = s_rod_leg3 * (s_cross_leg3 * t799 + c_cross_leg3 * t790);
-        let t807 = s_cross_leg3 * t790 - c_cross_leg3 * t799;
-        let t808 = c_rod_leg3 * t807;
-        let t814 = s_cross_leg3 * c_rod_leg3;
-        let t818 = t672 * s_rod_leg3;
-        let t825 = 0.24 * t814 * (t699 - rate_dot_rod_leg3) + t818 * (t747 + t610)
-            - t595 * t724 + t717 * t803;
+        let t604 = t371 - t372;
+        let t606 = t604 + t566 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t69 * (t603 + t82 * t606);
+        let t610 = 9.81 * c_arm_leg3;
+        let t611 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t577 * (t102 * t580 + t582 - 0.8660254037844387 * t590);
+        let gcross_vy_leg3 = t577 * (t78 * t580 + t584 + 0.5 * t590);
+        let gcross_vz_leg3 = t577 * (t68 * s_arm_leg3);
+        let t629 = gcross_vx_leg3 * t121 + gcross_vy_leg3 * t125 + gcross_vz_leg3 * t130;
+        let t631 = rate_rod_leg3 * (1.7857142857142858 * t592);
+        let t637 = 0.24 * s_cross_leg3;
+        let t639 = t566 * rate_cross_leg3;
+        let t644 = t582 * acceleration[0] + t584 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t637 * t574 - t639 - t639)
+            - t580 * t603;
+        let t646 = t644 - t590 * t606;
+        let t647 = 1.7857142857142858 * t646;
+        let t648 = t82 * t647;
+        let t650 = t631 + t648 + t631;
+        let t651 = s_rod_leg3 * t650;
+        let grod_vx_leg3 = 1.5464739353293548 * t81;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t81;
+        let t657 = grod_vx_leg3 * t121 - minus_grod_vy_leg3 * t125;
+        let t658 = t82 * t592;
+        let t660 = 3.188775510204082 * (t592 * t658);
+        let t661 = t657 * t660;
+        let t667 = gcross_vx_leg3 * t168 + gcross_vy_leg3 * t162 + gcross_vz_leg3 * t175;
+        let t671 = minus_grod_vy_leg3 * t162 - grod_vx_leg3 * t168;
+        let t672 = t671 * t660;
+        let t678 = gcross_vx_leg3 * t189 + gcross_vy_leg3 * t183 + gcross_vz_leg3 * t196;
+        let t682 = minus_grod_vy_leg3 * t183 - grod_vx_leg3 * t189;
+        let t683 = t682 * t660;
+        let t690 = c_rod_leg3 * (1.7857142857142858 * (t646 - t639)) - s_rod_leg3 * t631;
+        let t692 = c_rod_leg3 * t650 + t82 * t690;
+        let t694 = t658 * t658;
+        let t697 = 3.188775510204082 * (t694 - t592 * t592);
+        let rate_dot_rod_leg3 = t577 * t606;
+        let t709 = 3.188775510204082 * t694;
+        let t712 = s_rod_leg3 * (t660 + rate_dot_rod_leg3) + c_rod_leg3 * (t579 - t709);
+        let t723 = t629 * t690 + t661;
+        let t725 = t672 - t667 * t690;
+        let t727 = t683 - t678 * t690;
+        let t728 = 1.7857142857142858 * t604;
+        let t738 = t657 * rate_dot_rod_leg3;
+        let t739 = t671 * rate_dot_rod_leg3;
+        let t740 = t682 * rate_dot_rod_leg3;
+        let t748 = 0.24 * rate_dot_arm_leg3 - t610;
+        let t757 = t611 + 0.24 * t574;
+        let t761 = s_rod_leg3 * (s_cross_leg3 * t757 + c_cross_leg3 * t748);
+        let t765 = s_cross_leg3 * t748 - c_cross_leg3 * t757;
+        let t766 = c_rod_leg3 * t765;
+        let t772 = c_rod_leg3 * t637;
+        let t775 = t637 * s_rod_leg3;
+        let t784 = t772 * (t660 - rate_dot_rod_leg3) + t775 * (t709 + t579) - t564 * t650
+            + t678 * t761 - t682 * t766;
         Ok([
             [
-                rate_dot_arm_leg1, -t57, t58, rate_dot_arm_leg1, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t141 * t164 - t169,
-                t166 * t216 - t141 * t224, -(t141 * t239 + t166 * t157), t253,
-                -(t141 * t258 + t166 * t260), t269,
-                t278
+                rate_dot_arm_leg1, -t48, t49, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t132 * t151 - t157,
+                t153 * t204 - t132 * t213, -(t132 * t228 + t153 * t148), t239,
+                -(t132 * t244 + t153 * t147), t254,
+                t263
                     - 0.10285714285714286
-                        * (4.166666666666667 * t280 + 5.444444444444445 * t253
-                            + 5.444444444444445 * t269),
-                t323 - t166 * t327,
-                t15 * t41 - (0.42857142857142855 * (t306 * t155) + t157 * t310)
-                    - t141 * t326,
-                0.24 * t280,
+                        * (4.166666666666667 * t264 + 5.444444444444445 * t239
+                            + 5.444444444444445 * t254),
+                t312,
+                t15 * t36 - (t147 * t290 + t148 * t293) - t132 * t309,
+                0.24 * t264,
                 0.0,
                 0.0,
                 0.0,
@@ -4074,15 +3916,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t422 * t447 + t456,
-                t422 * t486 - t453 * t491,
-                t422 * t506 - t453 * t440,
-                t520,
-                -(t422 * t525 + t453 * t527),
-                t536,
-                t278 - 0.56 * (t520 + t536),
-                t453 * t559 - t422 * t564,
-                t422 * t558,
+                t398 * t420 + t430,
+                t398 * t461 - t426 * t466,
+                t398 * t481 - t426 * t415,
+                t492,
+                -(t398 * t497 + t426 * t414),
+                t507,
+                t263 - 0.56 * (t492 + t507),
+                t426 * t530 - t398 * t535,
+                t398 * t529,
                 0.0,
                 0.0,
                 0.0,
@@ -4091,34 +3933,33 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t666 * t691 - t700,
-                t666 * t730 + t697 * t735,
-                t666 * t750 + t697 * t684,
-                t764,
-                t666 * t769 + t697 * t771,
-                t780,
-                t278 - 0.56 * (t764 + t780),
-                -(t666 * t803 + t697 * t808),
-                t666 * t807,
+                t629 * t651 - t661,
+                t629 * t692 + t657 * t697,
+                t629 * t712 + t657 * t648,
+                t723,
+                t629 * t728 + t657 * t647,
+                t738,
+                t263 - 0.56 * (t723 + t738),
+                -(t629 * t761 + t657 * t766),
+                t629 * t765,
                 0.0,
-                t277,
+                t262,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t176 - t189 * t164, t189 * t224 - t175 * t216,
-                t189 * t239 + t175 * t157, t255, t189 * t258 + t175 * t260, -t270,
-                -(t293 + 0.56 * (t255 - t270)), t175 * t327 - t189 * t321, t189 * t326, 0.0,
-                rate_dot_arm_leg2, -t402, t403, rate_dot_arm_leg2, rate_arm_leg2,
-                ::overact::math::sign(rate_arm_leg2), 1.0, -(t462 * t447 + t467),
-                t466 * t491 - t462 * t486, t466 * t440 - t462 * t506, t522,
-                t462 * t525 + t466 * t527, -t537,
-                -(t293
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t164 - t177 * t151, t177 * t213 - t163 * t204,
+                t177 * t228 + t163 * t148, t241, t177 * t244 + t163 * t147, -t255,
+                -(t277 + 0.56 * (t241 - t255)), t163 * t310 - t177 * t304, t177 * t309, 0.0,
+                rate_dot_arm_leg2, -t379, t380, rate_dot_arm_leg2, rate_arm_leg2,
+                ::overact::math::sign(rate_arm_leg2), 1.0, -(t436 * t420 + t441),
+                t440 * t466 - t436 * t461, t440 * t415 - t436 * t481, t494,
+                t436 * t497 + t440 * t414, -t508,
+                -(t277
                     + 0.10285714285714286
-                        * (4.166666666666667 * t543 + 5.444444444444445 * t522
-                            - 5.444444444444445 * t537)),
-                t578 - t466 * t559,
-                0.42857142857142855 * (t567 * t438) + t440 * t571 + t352 * t385
-                    - t462 * t558,
-                0.24 * t543,
+                        * (4.166666666666667 * t514 + 5.444444444444445 * t494
+                            - 5.444444444444445 * t508)),
+                t550,
+                t414 * t538 + t415 * t541 + t334 * t366 - t436 * t529,
+                0.24 * t514,
                 0.0,
                 0.0,
                 0.0,
@@ -4126,38 +3967,37 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                -(t706 * t691 + t711),
-                t710 * t735 - t706 * t730,
-                t710 * t684 - t706 * t750,
-                t766,
-                t710 * t771 - t706 * t769,
-                t781,
-                -(t293 + 0.56 * (t766 + t781)),
-                t706 * t803 - t710 * t808,
-                -(t706 * t807),
+                -(t667 * t651 + t672),
+                t671 * t697 - t667 * t692,
+                t671 * t648 - t667 * t712,
+                t725,
+                t671 * t647 - t667 * t728,
+                t739,
+                -(t277 + 0.56 * (t725 + t739)),
+                t667 * t761 - t671 * t766,
+                -(t667 * t765),
                 0.0,
-                -t292,
+                -t276,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t197 - t210 * t164, t210 * t224 - t196 * t216,
-                t210 * t239 + t196 * t157, t257, t210 * t258 + t196 * t260, -t271,
-                -(t302 + 0.56 * (t257 - t271)), t196 * t327 - t210 * t321, t210 * t326, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t473 * t447 + t478), t477 * t491 - t473 * t486,
-                t477 * t440 - t473 * t506, t524, t473 * t525 + t477 * t527, -t538,
-                -(t302 + 0.56 * (t524 - t538)), t473 * t564 - t477 * t559, -(t473 * t558), 0.0,
-                rate_dot_arm_leg3, -t646, t647, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, -(t717 * t691 + t722),
-                t721 * t735 - t717 * t730, t721 * t684 - t717 * t750, t768,
-                t721 * t771 - t717 * t769, t782,
-                -(t302
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t185 - t198 * t151, t198 * t213 - t184 * t204,
+                t198 * t228 + t184 * t148, t243, t198 * t244 + t184 * t147, -t256,
+                -(t286 + 0.56 * (t243 - t256)), t184 * t310 - t198 * t304, t198 * t309, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t447 * t420 + t452), t451 * t466 - t447 * t461,
+                t451 * t415 - t447 * t481, t496, t447 * t497 + t451 * t414, -t509,
+                -(t286 + 0.56 * (t496 - t509)), t447 * t535 - t451 * t530, -(t447 * t529), 0.0,
+                rate_dot_arm_leg3, -t610, t611, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, -(t678 * t651 + t683),
+                t682 * t697 - t678 * t692, t682 * t648 - t678 * t712, t727,
+                t682 * t647 - t678 * t728, t740,
+                -(t286
                     + 0.10285714285714286
-                        * (4.166666666666667 * t790 + 5.444444444444445 * t768
-                            + 5.444444444444445 * t782)),
-                t825 - t721 * t808,
-                0.42857142857142855 * (t814 * t682) + t684 * t818 + t595 * t626
-                    - t717 * t807,
-                0.24 * t790,
-                -t301,
+                        * (4.166666666666667 * t748 + 5.444444444444445 * t727
+                            + 5.444444444444445 * t740)),
+                t784,
+                t647 * t772 + t648 * t775 + t564 * t594 - t678 * t765,
+                0.24 * t748,
+                -t285,
             ],
         ])
     }
@@ -4172,7 +4012,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1028 operations (362 additions, 647 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 941 intermediates.
+    /// 960 operations (336 additions, 605 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 873 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4183,442 +4023,427 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t21 = 9.81 * c_arm_leg1;
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t26 = 9.81 * minus_s_arm_leg1;
-        let t29 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t29, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t29);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t20 = 9.81 * c_arm_leg1;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let t25 = 9.81 * minus_s_arm_leg1;
+        let t28 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t28, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t28);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t33 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t36 = pose[0] - 0.025 + 0.1;
-        let t37 = 0.5 * t36;
-        let t38 = 0.8660254037844387 * t33 - t37;
-        let t41 = 0.2304 * (t38 * t38 + t3);
-        let t42 = 1.0 / t41;
-        let t43 = 0.48 * t38;
-        let t44 = t36 * t36;
-        let t47 = t44 + t33 * t33 + t3;
-        let t49 = t47 - 0.3136 + 0.0576;
-        let t52 = t41 - t49 * t49;
-        ::overact::guard::reach(t52, "leg2")?;
-        let t53 = ::overact::math::sqrt(t52);
-        let c_arm_leg2 = t42 * (t43 * t49 - t14 * t53);
-        let t58 = 0.8660254037844387 * t36;
-        let t60 = t58 + 0.5 * t33;
-        let t61 = t60 * t60;
-        let t63 = 1.0 - 3.188775510204082 * t61;
-        ::overact::guard::reach(t63, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t63);
+        let t31 = t0 + 0.025;
+        let t32 = t31 * t31;
+        let t34 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t37 = t32 + t34 * t34 + t3;
+        let t40 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t42 = 0.8660254037844387 * t31 - 0.5 * t40;
+        let t43 = pose[1] + t42;
+        let t44 = t43 * t43;
+        let t46 = 0.2304 * (t37 - t44);
+        let t47 = 1.0 / t46;
+        let t49 = 0.5 * t31;
+        let t51 = 0.48 * (0.8660254037844387 * t34 - t49);
+        let t52 = t37 - 0.3136;
+        let t53 = t52 + 0.0576;
+        let t56 = t46 - t53 * t53;
+        ::overact::guard::reach(t56, "leg2")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let c_arm_leg2 = t47 * (t51 * t53 - t13 * t57);
+        let t62 = 1.0 - 3.188775510204082 * t44;
+        ::overact::guard::reach(t62, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t65 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t53 / t65;
+        let t64 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t57 / t64;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t42 * (t14 * t49 + t43 * t53);
-        let c_cross_leg2 = (t47 - (0.0576 + t61) - 0.3136 * t63) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t47 * (t13 * t53 + t51 * t57);
+        let c_cross_leg2 = (-0.0576 + t52) / t64;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t80 = 1.0 / s_cross_leg2;
-        let t81 = 4.166666666666667 * t80;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t81;
-        let t84 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t86 = t37 + 0.8660254037844387 * t84;
-        let t89 = 0.2304 * (t86 * t86 + t3);
-        let t92 = t44 + t84 * t84 + t3;
-        let t94 = t92 - 0.3136 + 0.0576;
-        let t96 = t89 - t94 * t94;
-        ::overact::guard::reach(t96, "leg3")?;
-        let t97 = ::overact::math::sqrt(t96);
-        let t100 = t58 - 0.5 * t84;
-        let t101 = t100 * t100;
-        let t103 = 1.0 - 3.188775510204082 * t101;
-        ::overact::guard::reach(t103, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t103);
+        let t75 = 1.0 / s_cross_leg2;
+        let t76 = 4.166666666666667 * t75;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t76;
+        let t80 = t32 + t40 * t40 + t3;
+        let t81 = t42 * t42;
+        let t83 = 0.2304 * (t80 - t81);
+        let t84 = t80 - 0.3136;
+        let t85 = t84 + 0.0576;
+        let t87 = t83 - t85 * t85;
+        ::overact::guard::reach(t87, "leg3")?;
+        let t88 = ::overact::math::sqrt(t87);
+        let t90 = 1.0 - 3.188775510204082 * t81;
+        ::overact::guard::reach(t90, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t90);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t105 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t97 / t105;
+        let t92 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t88 / t92;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t107 = 1.0 / s_cross_leg3;
-        let t108 = 4.166666666666667 * t107;
-        let t109 = 1.0 / t89;
-        let t110 = 0.48 * t86;
-        let minus_c_arm_leg3 = t109 * (t110 * t94 + t14 * t97);
-        let c_cross_leg3 = (t92 - (0.0576 + t101) - 0.3136 * t103)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t109 * (t110 * t97 - t14 * t94);
+        let t94 = 1.0 / s_cross_leg3;
+        let t95 = 4.166666666666667 * t94;
+        let t96 = 1.0 / t83;
+        let t99 = 0.48 * (t49 + 0.8660254037844387 * t40);
+        let minus_c_arm_leg3 = t96 * (t99 * t85 + t13 * t88);
+        let c_cross_leg3 = (-0.0576 + t84) / t92;
+        let s_arm_leg3 = t96 * (t99 * t88 - t13 * t85);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t128 = 0.5 * minus_c_armcross_leg3;
-        let t129 = 1.0 / c_rod_leg3;
-        let t130 = 1.7857142857142858 * t129;
-        let t131 = t100 * t130;
-        let garm_vx_leg3 = t108 * (t128 + 0.8660254037844387 * t131);
-        let t136 = 1.0 / c_rod_leg2;
-        let t137 = 1.7857142857142858 * t136;
-        let t138 = t60 * t137;
+        let t113 = 0.5 * minus_c_armcross_leg3;
+        let t114 = 1.0 / c_rod_leg3;
+        let t115 = 1.7857142857142858 * t114;
+        let t116 = t42 * t115;
+        let garm_vx_leg3 = t95 * (t113 + 0.8660254037844387 * t116);
+        let t121 = 1.0 / c_rod_leg2;
+        let t122 = 1.7857142857142858 * t121;
+        let t123 = t43 * t122;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t143 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t81 * (0.8660254037844387 * t138 - t143);
+        let t128 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t76 * (0.8660254037844387 * t123 - t128);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t108;
-        let t153 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t153;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t95;
+        let t137 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t16 / t137;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t155 = 1.0 / s_cross_leg1;
-        let t156 = 4.166666666666667 * t155;
-        let t157 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t156 * t157;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t29) / (0.2688 * c_rod_leg1);
+        let t139 = 1.0 / s_cross_leg1;
+        let t140 = 4.166666666666667 * t139;
+        let t141 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t140 * t141;
+        let c_cross_leg1 = (t10 + -0.0576) / t137;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t156;
-        let t170 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t108 * (t170 - 0.5 * t131);
-        let t175 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
-        let t177 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t81 * (t177 + 0.5 * t138);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t140;
+        let t150 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t95 * (t150 - 0.5 * t116);
+        let t155 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let t157 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t76 * (t157 + 0.5 * t123);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t156;
-        let t187 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t192 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t194 = garm_vx_leg2 * t175 - garm_vy_leg2 * t187 - minus_garm_vz_leg2 * t192;
-        ::overact::guard::platform(t194, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t194, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t194, 87.78853732233405, "kept actuators")?;
-        let t195 = 1.0 / t194;
-        let t196 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t195;
-        let t197 = grod_vy_leg1 * t196;
-        let t198 = c_cross_leg1 * t155;
-        let t203 = garm_vx_leg1 * actuator_velocities[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t140;
+        let t167 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t172 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t174 = garm_vx_leg2 * t155 - garm_vy_leg2 * t167 - minus_garm_vz_leg2 * t172;
+        ::overact::guard::platform(t174, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t174, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t174, 87.78853732233405, "kept actuators")?;
+        let t175 = 1.0 / t174;
+        let t176 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t175;
+        let t177 = grod_vy_leg1 * t176;
+        let t178 = 0.24 * c_cross_leg1;
+        let t184 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t208 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t189 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t208, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t208, 14.869730172882841, "actuators")?;
-        let t209 = 1.0 / t208;
-        let t215 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t189, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t189, 14.869730172882841, "actuators")?;
+        let t190 = 1.0 / t189;
+        let t196 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t216 = t215 * t209;
-        let t223 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t215 * t216;
-        ::overact::guard::platform(t223, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t223, 14.869730172882846, "actuators")?;
-        let t224 = 1.0 / t223;
-        let t231 = garm_vy_leg1 * actuator_velocities[0]
+        let t197 = t196 * t190;
+        let t204 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t196 * t197;
+        ::overact::guard::platform(t204, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t204, 14.869730172882846, "actuators")?;
+        let t205 = 1.0 / t204;
+        let t212 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t203 * t216;
-        let t237 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vy_leg3 * actuator_velocities[2] - t184 * t197;
+        let t218 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t238 = t237 * t209;
-        let t245 = t215 * t238
+        let t219 = t218 * t190;
+        let t226 = t196 * t219
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t246 = t245 * t224;
-        let t255 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t227 = t226 * t205;
+        let t236 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t237 * t238 - t245 * t246;
-        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t255, 34.855350201355726, "actuators")?;
-        let t256 = 1.0 / t255;
-        let t266 = t256
-            * (t203 * t238
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t218 * t219 - t226 * t227;
+        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
+        let t237 = 1.0 / t236;
+        let t247 = t237
+            * (t184 * t219
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t246 * t231);
-        let t268 = t224 * t231 - t246 * t266;
-        let t272 = t203 * t209 - t216 * t268 + t238 * t266;
-        let t277 = 0.24 * c_cross_leg1;
-        let t278 = t277 * garm_vy_leg1;
-        let t284 = t198 * (c_armcross_leg1 * t272 - s_armcross_leg1 * t266) + t278 * t268
-            + s_armcross_leg1 * t272 + c_armcross_leg1 * t266;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t284;
-        let t286 = pose[1] * minus_rate_cross_leg1;
-        let t288 = 3.188775510204082 * (t284 * t286);
-        let t289 = t197 * t288;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t278;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t198 + s_armcross_leg1);
-        let t298 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t195;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t198);
-        let t307 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t195;
-        let t309 = minus_gcross_vy_leg1 * t196 - minus_gcross_vx_leg1 * t298
-            - minus_gcross_vz_leg1 * t307;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t227 * t212);
+        let t249 = t205 * t212 - t227 * t247;
+        let t253 = t184 * t190 - t197 * t249 + t219 * t247;
+        let t257 = actuator_velocities[0] * t178 + s_armcross_leg1 * t253
+            + c_armcross_leg1 * t247;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t257;
+        let t259 = pose[1] * minus_rate_cross_leg1;
+        let t261 = 3.188775510204082 * (t257 * t259);
+        let t262 = t177 * t261;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t178 * garm_vy_leg1);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t139);
+        let t271 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t175;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t139);
+        let t279 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t175;
+        let t281 = minus_gcross_vy_leg1 * t176 - minus_gcross_vx_leg1 * t271
+            - minus_gcross_vz_leg1 * t279;
+        let rate_rod_leg1 = grod_vy_leg1 * t249;
+        let t284 = rate_rod_leg1 * (1.7857142857142858 * t257);
+        let t286 = actuator_velocities[0] * actuator_velocities[0];
+        let t289 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t290 = rate_rod_leg1 * rate_rod_leg1;
+        let t294 = pose[1] * t290;
+        let rate_dot_arm_leg1 = t140
+            * (t178 * t286 + 0.56 * c_rod_leg1 * (t289 + t290) + t141 * t294);
+        let t298 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t300 = 0.24 * c_cross_leg2;
+        let t301 = actuator_velocities[1] * actuator_velocities[1];
+        let t304 = 0.8660254037844387 * t253;
+        let t305 = 0.5 * t249;
+        let t306 = t304 + t305;
+        let minus_rate_rod_leg2 = t122 * t306;
+        let t308 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t309 = 0.5 * s_armcross_leg2;
+        let t311 = 0.8660254037844387 * s_armcross_leg2;
+        let t316 = c_cross_leg2 * t75;
+        let t323 = t309 * t253 - t311 * t249 - c_armcross_leg2 * t247
+            - t316 * (t157 * t249 - t128 * t253 - s_armcross_leg2 * t247);
+        let t324 = t123 * t316;
+        let t326 = t323 - t324 * t306;
+        let rate_cross_leg2 = t122 * t326;
+        let t328 = rate_cross_leg2 * rate_cross_leg2;
+        let t331 = t300 * t301 + 0.56 * c_rod_leg2 * (t308 + t328);
+        let t332 = t43 * t308;
+        let rate_dot_arm_leg2 = t76 * (t331 + t123 * t332);
+        let t336 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t339 = 0.24 * c_cross_leg3;
+        let t340 = actuator_velocities[2] * actuator_velocities[2];
+        let t343 = t304 - t305;
+        let rate_rod_leg3 = t115 * t343;
+        let t345 = rate_rod_leg3 * rate_rod_leg3;
+        let t346 = 0.5 * s_armcross_leg3;
+        let t348 = 0.8660254037844387 * s_armcross_leg3;
+        let t353 = c_cross_leg3 * t94;
+        let t360 = t346 * t253 + t348 * t249 + minus_c_armcross_leg3 * t247
+            - t353 * (t113 * t253 + t150 * t249 - s_armcross_leg3 * t247);
+        let t361 = t116 * t353;
+        let t363 = t360 - t361 * t343;
+        let rate_cross_leg3 = t115 * t363;
+        let t365 = rate_cross_leg3 * rate_cross_leg3;
+        let t368 = t339 * t340 + 0.56 * c_rod_leg3 * (t345 + t365);
+        let t369 = t42 * t345;
+        let rate_dot_arm_leg3 = t95 * (t368 + t116 * t369);
+        let t373 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t375 = garm_vx_leg1 * t298 + garm_vx_leg2 * t336 + garm_vx_leg3 * t373;
+        let t383 = garm_vy_leg1 * t298 + garm_vy_leg2 * t336 + garm_vy_leg3 * t373
+            - t197 * t375;
+        let t394 = t237
+            * (t219 * t375
+                - (minus_garm_vz_leg1 * t298 + minus_garm_vz_leg2 * t336
+                    + minus_garm_vz_leg3 * t373) - t227 * t383);
+        let t396 = t205 * t383 - t227 * t394;
+        let t400 = t190 * t375 - t197 * t396 + t219 * t394;
+        let t404 = 0.24 * t286;
+        let t406 = t259 * rate_rod_leg1;
+        let t410 = actuator_accelerations[0] * t178 + s_armcross_leg1 * t400
+            + c_armcross_leg1 * t394 + s_cross_leg1 * t404 + t406 + t406;
+        let t411 = 1.7857142857142858 * t410;
+        let t412 = t141 * t411;
+        let t414 = t284 + t412 + t284;
+        let t415 = c_rod_leg1 * t414;
+        let t416 = t141 * t415;
+        let t419 = t167 * t175;
+        let t420 = grod_vy_leg1 * t419;
+        let t421 = t420 * t261;
+        let t423 = t155 * t175;
+        let t426 = t172 * t175;
+        let t428 = minus_gcross_vy_leg1 * t419 - minus_gcross_vx_leg1 * t423
+            - minus_gcross_vz_leg1 * t426;
+        let t434 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t175;
+        let t439 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t175;
+        let t445 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t175;
+        let t447 = minus_gcross_vx_leg1 * t434 - minus_gcross_vy_leg1 * t439
+            + minus_gcross_vz_leg1 * t445;
+        let t449 = grod_vy_leg1 * t439;
+        let t450 = t449 * t261;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t311 = actuator_velocities[0] * actuator_velocities[0];
-        let t313 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t268;
-        let t315 = rate_rod_leg1 * rate_rod_leg1;
-        let t316 = t313 + t315;
-        let t318 = t277 * t311 + t153 * t316;
-        let t321 = minus_rate_cross_leg1 * t286 - pose[1] * t316;
-        let rate_dot_arm_leg1 = t156 * (t318 - t157 * t321);
-        let t325 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t327 = 0.24 * c_cross_leg2;
-        let t328 = actuator_velocities[1] * actuator_velocities[1];
-        let t330 = 0.8660254037844387 * t272;
-        let t331 = 0.5 * t268;
-        let t332 = t330 + t331;
-        let minus_rate_rod_leg2 = t137 * t332;
-        let t334 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t335 = 0.5 * s_armcross_leg2;
-        let t337 = 0.8660254037844387 * s_armcross_leg2;
-        let t342 = c_cross_leg2 * t80;
-        let t349 = t335 * t272 - t337 * t268 - c_armcross_leg2 * t266
-            - t342 * (t177 * t268 - t143 * t272 - s_armcross_leg2 * t266);
-        let t351 = t327 * (t81 * t138);
-        let t353 = t349 - t351 * t332;
-        let rate_cross_leg2 = t137 * t353;
-        let t355 = rate_cross_leg2 * rate_cross_leg2;
-        let t356 = t334 + t355;
-        let t358 = t327 * t328 + t65 * t356;
-        let t360 = t60 * rate_cross_leg2;
-        let t362 = t60 * t356 - rate_cross_leg2 * t360;
-        let rate_dot_arm_leg2 = t81 * (t358 + t138 * t362);
-        let t366 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t369 = 0.24 * c_cross_leg3;
-        let t370 = actuator_velocities[2] * actuator_velocities[2];
-        let t372 = t330 - t331;
-        let rate_rod_leg3 = t130 * t372;
-        let t374 = rate_rod_leg3 * rate_rod_leg3;
-        let t375 = 0.5 * s_armcross_leg3;
-        let t377 = 0.8660254037844387 * s_armcross_leg3;
-        let t382 = c_cross_leg3 * t107;
-        let t389 = t375 * t272 + t377 * t268 + minus_c_armcross_leg3 * t266
-            - t382 * (t128 * t272 + t170 * t268 - s_armcross_leg3 * t266);
-        let t391 = t369 * (t108 * t131);
-        let t393 = t389 - t391 * t372;
-        let rate_cross_leg3 = t130 * t393;
-        let t395 = rate_cross_leg3 * rate_cross_leg3;
-        let t396 = t374 + t395;
-        let t398 = t369 * t370 + t105 * t396;
-        let t399 = t100 * rate_cross_leg3;
-        let t402 = rate_cross_leg3 * t399 - t100 * t396;
-        let rate_dot_arm_leg3 = t108 * (t398 - t131 * t402);
-        let t406 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t408 = garm_vx_leg1 * t325 + garm_vx_leg2 * t366 + garm_vx_leg3 * t406;
-        let t416 = garm_vy_leg1 * t325 + garm_vy_leg2 * t366 + garm_vy_leg3 * t406
-            - t216 * t408;
-        let t427 = t256
-            * (t238 * t408
-                - (minus_garm_vz_leg1 * t325 + minus_garm_vz_leg2 * t366
-                    + minus_garm_vz_leg3 * t406) - t246 * t416);
-        let t429 = t224 * t416 - t246 * t427;
-        let t433 = t209 * t408 - t216 * t429 + t238 * t427;
-        let t439 = t429 - t321;
-        let t448 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t452 = t198 * (c_armcross_leg1 * t433 - s_armcross_leg1 * t427 + t318)
-            + t278 * t439 + s_armcross_leg1 * t433 + c_armcross_leg1 * t427
-            + 0.24 * s_cross_leg1 * t311 + t448 + t448;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t452;
-        let t454 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t456 = rate_rod_leg1 * (1.7857142857142858 * t284);
-        let t457 = t454 + t456;
-        let t460 = c_rod_leg1 * (1.7857142857142858 * t448);
-        let t461 = s_rod_leg1 * t457 + t460;
-        let t464 = t187 * t195;
-        let t465 = grod_vy_leg1 * t464;
-        let t466 = t465 * t288;
-        let t468 = t175 * t195;
-        let t471 = t192 * t195;
-        let t473 = minus_gcross_vy_leg1 * t464 - minus_gcross_vx_leg1 * t468
-            - minus_gcross_vz_leg1 * t471;
-        let t479 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t195;
-        let t484 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t195;
-        let t490 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t195;
-        let t492 = minus_gcross_vx_leg1 * t479 - minus_gcross_vy_leg1 * t484
-            + minus_gcross_vz_leg1 * t490;
-        let t494 = grod_vy_leg1 * t484;
-        let t495 = t494 * t288;
-        let t497 = t448 - t452;
-        let t501 = t456 + t457;
-        let t503 = 3.188775510204082 * (pose[1] * (t448 + t497)) - c_rod_leg1 * t501;
-        let t505 = t286 * t286;
-        let t508 = 3.188775510204082 * (t505 - t284 * t284);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t439;
-        let t520 = 3.188775510204082 * t505;
-        let t523 = s_rod_leg1 * (t288 + rate_dot_rod_leg1) + c_rod_leg1 * (t315 - t520);
-        let t535 = t460 + c_rod_leg1 * (1.7857142857142858 * t497);
-        let t537 = t309 * t535 - t289;
-        let t539 = t473 * t535 - t466;
-        let t541 = t492 * t535 + t495;
-        let t542 = 1.7857142857142858 * t429;
-        let t544 = 1.7857142857142858 * t452;
-        let t553 = t197 * rate_dot_rod_leg1;
-        let t554 = t465 * rate_dot_rod_leg1;
-        let t555 = t494 * rate_dot_rod_leg1;
-        let t559 = t427 + 9.81;
-        let t561 = t298 * t433 - t196 * t429 + t307 * t559;
-        let t562 = 1.7857142857142858 * t561;
-        let t564 = 0.24 * actuator_accelerations[0] - t21;
-        let t576 = t468 * t433 - t464 * t429 + t471 * t559;
-        let t577 = 1.7857142857142858 * t576;
-        let t585 = t484 * t429 - t479 * t433 - t490 * t559;
-        let t586 = 1.7857142857142858 * t585;
-        let t594 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t602 = t26 - 0.24 * t311;
-        let t605 = s_rod_leg1 * (c_cross_leg1 * t564 - s_cross_leg1 * t602);
-        let t607 = 0.8928571428571429 * t17 * (t288 - rate_dot_rod_leg1)
-            + t594 * (t520 + t315) + t277 * t501 - t309 * t605;
-        let t610 = c_cross_leg1 * t602 + s_cross_leg1 * t564;
-        let t611 = c_rod_leg1 * t610;
-        let t631 = 9.81 * c_arm_leg2;
-        let t632 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t137 * (t143 * t342 + t335 - 0.8660254037844387 * t351);
-        let minus_gcross_vy_leg2 = t137 * (t177 * t342 + t337 + 0.5 * t351);
-        let gcross_vz_leg2 = t137 * (s_armcross_leg2 * t342 - c_armcross_leg2);
-        let t651 = gcross_vx_leg2 * t298 + minus_gcross_vy_leg2 * t196
-            + gcross_vz_leg2 * t307;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t60;
-        let t661 = t60 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t664 = t335 * t433 - t337 * t429 - c_armcross_leg2 * t427
-            - (0.24 * s_cross_leg2 * t328 - t661 - t661);
-        let t673 = 0.8660254037844387 * t433;
-        let t674 = 0.5 * t429;
-        let t675 = t673 + t674;
-        let t676 = t675 + t362;
-        let t678 = t664
-            - t342 * (t177 * t429 - t143 * t433 - s_armcross_leg2 * t427 + t358)
-            - t351 * t676;
-        let rate_dot_cross_leg2 = t137 * t678;
-        let t680 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t682 = minus_rate_rod_leg2 * (1.7857142857142858 * t353);
-        let t683 = t680 + t682;
-        let t686 = c_rod_leg2 * (1.7857142857142858 * t661);
-        let t687 = minus_s_rod_leg2 * t683 + t686;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t136;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t136;
-        let t693 = minus_grod_vy_leg2 * t196 - minus_grod_vx_leg2 * t298;
-        let t695 = 3.188775510204082 * (t353 * t360);
-        let t696 = t693 * t695;
-        let t702 = gcross_vx_leg2 * t468 + minus_gcross_vy_leg2 * t464
-            + gcross_vz_leg2 * t471;
-        let t706 = minus_grod_vy_leg2 * t464 - minus_grod_vx_leg2 * t468;
-        let t707 = t706 * t695;
-        let t711 = minus_grod_vx_leg2 * t479 - minus_grod_vy_leg2 * t484;
-        let t712 = t711 * t695;
-        let t717 = gcross_vx_leg2 * t479 + minus_gcross_vy_leg2 * t484
-            + gcross_vz_leg2 * t490;
-        let t720 = t678 - t661;
-        let t724 = t682 + t683;
-        let t726 = 3.188775510204082 * (t60 * (t661 - t720)) - c_rod_leg2 * t724;
-        let t728 = t360 * t360;
-        let t731 = 3.188775510204082 * (t728 - t353 * t353);
-        let minus_rate_dot_rod_leg2 = t137 * t676;
-        let t743 = 3.188775510204082 * t728;
-        let t746 = minus_s_rod_leg2 * (t695 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t334 - t743);
-        let t758 = c_rod_leg2 * (1.7857142857142858 * t720) - t686;
-        let t760 = t651 * t758 - t696;
-        let t762 = t702 * t758 - t707;
-        let t764 = t717 * t758 + t712;
-        let t765 = 1.7857142857142858 * t678;
-        let t767 = 1.7857142857142858 * t675;
-        let t776 = t693 * minus_rate_dot_rod_leg2;
-        let t777 = t706 * minus_rate_dot_rod_leg2;
-        let t778 = t711 * minus_rate_dot_rod_leg2;
-        let t783 = 0.24 * actuator_accelerations[1] - t631;
-        let t796 = t632 - 0.24 * t328;
-        let t799 = minus_s_rod_leg2 * (c_cross_leg2 * t783 - s_cross_leg2 * t796);
-        let t803 = c_cross_leg2 * t796 + s_cross_leg2 * t783;
-        let t804 = c_rod_leg2 * t803;
-        let t811 = 0.42857142857142855 * (t60 * s_cross_leg2);
-        let t818 = 0.8928571428571429 * t53 * (minus_rate_dot_rod_leg2 - t695)
-            - t811 * (t743 + t334) + t327 * t724 + t702 * t799;
-        let t835 = 9.81 * minus_c_arm_leg3;
-        let t836 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t130 * (t375 - t128 * t382 - 0.8660254037844387 * t391);
-        let gcross_vy_leg3 = t130 * (t377 - t170 * t382 + 0.5 * t391);
-        let gcross_vz_leg3 = t130 * (s_armcross_leg3 * t382 + minus_c_armcross_leg3);
-        let t855 = gcross_vx_leg3 * t298 - gcross_vy_leg3 * t196 + gcross_vz_leg3 * t307;
-        let s_rod_leg3 = 1.7857142857142858 * t100;
-        let t865 = t100 * (rate_cross_leg3 * rate_rod_leg3);
-        let t868 = t375 * t433 + t377 * t429 + minus_c_armcross_leg3 * t427
-            - (0.24 * s_cross_leg3 * t370 - t865 - t865);
-        let t877 = t673 - t674;
-        let t878 = t877 - t402;
-        let t880 = t868
-            - t382 * (t128 * t433 + t170 * t429 - s_armcross_leg3 * t427 + t398)
-            - t391 * t878;
-        let rate_dot_cross_leg3 = t130 * t880;
-        let t882 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t884 = rate_rod_leg3 * (1.7857142857142858 * t393);
-        let t885 = t882 + t884;
-        let t888 = c_rod_leg3 * (1.7857142857142858 * t865);
-        let t889 = s_rod_leg3 * t885 + t888;
-        let grod_vx_leg3 = 1.5464739353293548 * t129;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t129;
-        let t895 = grod_vx_leg3 * t298 + minus_grod_vy_leg3 * t196;
-        let t897 = 3.188775510204082 * (t393 * t399);
-        let t898 = t895 * t897;
-        let t904 = gcross_vx_leg3 * t468 - gcross_vy_leg3 * t464 + gcross_vz_leg3 * t471;
-        let t908 = grod_vx_leg3 * t468 + minus_grod_vy_leg3 * t464;
-        let t909 = t908 * t897;
-        let t915 = gcross_vy_leg3 * t484 - gcross_vx_leg3 * t479 - gcross_vz_leg3 * t490;
-        let t919 = grod_vx_leg3 * t479 + minus_grod_vy_leg3 * t484;
-        let t920 = t919 * t897;
-        let t922 = t884 + t885;
-        let t924 = t880 - t865;
-        let t928 = c_rod_leg3 * t922 - 3.188775510204082 * (t100 * (t865 - t924));
-        let t930 = t399 * t399;
-        let t933 = 3.188775510204082 * (t930 - t393 * t393);
-        let rate_dot_rod_leg3 = t130 * t878;
-        let t945 = 3.188775510204082 * t930;
-        let t948 = s_rod_leg3 * (t897 + rate_dot_rod_leg3) + c_rod_leg3 * (t374 - t945);
-        let t960 = c_rod_leg3 * (1.7857142857142858 * t924) - t888;
-        let t962 = t855 * t960 + t898;
-        let t964 = t904 * t960 + t909;
-        let t966 = t915 * t960 - t920;
-        let t967 = 1.7857142857142858 * t877;
-        let t969 = 1.7857142857142858 * t880;
-        let t978 = t895 * rate_dot_rod_leg3;
-        let t979 = t908 * rate_dot_rod_leg3;
-        let t980 = t919 * rate_dot_rod_leg3;
-        let t988 = t835 + 0.24 * actuator_accelerations[2];
-        let t997 = t836 + 0.24 * t370;
-        let t1001 = s_rod_leg3 * (s_cross_leg3 * t997 + c_cross_leg3 * t988);
-        let t1005 = s_cross_leg3 * t988 - c_cross_leg3 * t997;
-        let t1006 = c_rod_leg3 * t1005;
-        let t1016 = 0.42857142857142855 * (t100 * s_cross_leg3);
-        let t1023 = 0.8928571428571429 * t97 * (t897 - rate_dot_rod_leg3)
-            + t1016 * (t945 + t374) - t369 * t922 - t915 * t1001;
+        let t457 = s_rod_leg1 * t284 + c_rod_leg1 * (1.7857142857142858 * (t406 - t410));
+        let t459 = t141 * t457 - t415;
+        let t461 = t259 * t259;
+        let t464 = 3.188775510204082 * (t461 - t257 * t257);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t396 + t294);
+        let t477 = 3.188775510204082 * t461;
+        let t480 = s_rod_leg1 * (t261 + rate_dot_rod_leg1) + c_rod_leg1 * (t290 - t477);
+        let t491 = t281 * t457 - t262;
+        let t493 = t428 * t457 - t421;
+        let t495 = t447 * t457 + t450;
+        let t496 = 1.7857142857142858 * t396;
+        let t506 = t177 * rate_dot_rod_leg1;
+        let t507 = t420 * rate_dot_rod_leg1;
+        let t508 = t449 * rate_dot_rod_leg1;
+        let t512 = t394 + 9.81;
+        let t514 = t271 * t400 - t176 * t396 + t279 * t512;
+        let t515 = 1.7857142857142858 * t514;
+        let t517 = 0.24 * actuator_accelerations[0] - t20;
+        let t529 = t423 * t400 - t419 * t396 + t426 * t512;
+        let t530 = 1.7857142857142858 * t529;
+        let t538 = t439 * t396 - t434 * t400 - t445 * t512;
+        let t539 = 1.7857142857142858 * t538;
+        let t543 = 0.8928571428571429 * t16;
+        let t546 = t141 * t543;
+        let t553 = t25 - t404;
+        let t556 = s_rod_leg1 * (c_cross_leg1 * t517 - s_cross_leg1 * t553);
+        let t561 = c_cross_leg1 * t553 + s_cross_leg1 * t517;
+        let t562 = c_rod_leg1 * t561;
+        let t564 = t543 * (t261 - rate_dot_rod_leg1) + t546 * (t477 + t290) + t178 * t414
+            - t281 * t556 + t177 * t562;
+        let t581 = 9.81 * c_arm_leg2;
+        let t582 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t122 * (t128 * t316 + t309 - 0.8660254037844387 * t324);
+        let minus_gcross_vy_leg2 = t122 * (t157 * t316 + t311 + 0.5 * t324);
+        let minus_gcross_vz_leg2 = t122 * (minus_s_arm_leg2 * t75);
+        let t600 = gcross_vx_leg2 * t271 + minus_gcross_vy_leg2 * t176
+            - minus_gcross_vz_leg2 * t279;
+        let t602 = minus_rate_rod_leg2 * (1.7857142857142858 * t326);
+        let t608 = 0.24 * t301;
+        let t610 = t43 * rate_cross_leg2;
+        let t611 = minus_rate_rod_leg2 * t610;
+        let t622 = t309 * t400 - t311 * t396 - c_armcross_leg2 * t394
+            - (s_cross_leg2 * t608 - t611 - t611)
+            - t316 * (t157 * t396 - t128 * t400 - s_armcross_leg2 * t394 + t331);
+        let t623 = 0.8660254037844387 * t400;
+        let t624 = 0.5 * t396;
+        let t625 = t623 + t624;
+        let t626 = t625 + t332;
+        let t628 = t622 - t324 * t626;
+        let t629 = 1.7857142857142858 * t628;
+        let t630 = t123 * t629;
+        let t632 = t602 + t630 + t602;
+        let t633 = c_rod_leg2 * t632;
+        let t634 = t123 * t633;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t121;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t121;
+        let t640 = minus_grod_vy_leg2 * t176 - minus_grod_vx_leg2 * t271;
+        let t642 = 3.188775510204082 * (t326 * t610);
+        let t643 = t640 * t642;
+        let t649 = gcross_vx_leg2 * t423 + minus_gcross_vy_leg2 * t419
+            - minus_gcross_vz_leg2 * t426;
+        let t653 = minus_grod_vy_leg2 * t419 - minus_grod_vx_leg2 * t423;
+        let t654 = t653 * t642;
+        let t658 = minus_grod_vx_leg2 * t434 - minus_grod_vy_leg2 * t439;
+        let t659 = t658 * t642;
+        let t664 = gcross_vx_leg2 * t434 + minus_gcross_vy_leg2 * t439
+            - minus_gcross_vz_leg2 * t445;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t43;
+        let t672 = c_rod_leg2 * (1.7857142857142858 * (t628 - t611))
+            - minus_s_rod_leg2 * t602;
+        let t674 = t123 * t672 + t633;
+        let t676 = t610 * t610;
+        let t679 = 3.188775510204082 * (t676 - t326 * t326);
+        let minus_rate_dot_rod_leg2 = t122 * t626;
+        let t691 = 3.188775510204082 * t676;
+        let t694 = minus_s_rod_leg2 * (t642 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t308 - t691);
+        let t705 = t600 * t672 - t643;
+        let t707 = t649 * t672 - t654;
+        let t709 = t664 * t672 + t659;
+        let t711 = 1.7857142857142858 * t625;
+        let t720 = t640 * minus_rate_dot_rod_leg2;
+        let t721 = t653 * minus_rate_dot_rod_leg2;
+        let t722 = t658 * minus_rate_dot_rod_leg2;
+        let t727 = 0.24 * actuator_accelerations[1] - t581;
+        let t739 = t582 - t608;
+        let t742 = minus_s_rod_leg2 * (c_cross_leg2 * t727 - s_cross_leg2 * t739);
+        let t746 = c_cross_leg2 * t739 + s_cross_leg2 * t727;
+        let t747 = c_rod_leg2 * t746;
+        let t750 = 0.8928571428571429 * t57;
+        let t753 = t123 * t750;
+        let t762 = t750 * (minus_rate_dot_rod_leg2 - t642) - t753 * (t691 + t308)
+            + t300 * t632 + t649 * t742 - t653 * t747;
+        let t776 = 9.81 * minus_c_arm_leg3;
+        let t777 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t115 * (t346 - t113 * t353 - 0.8660254037844387 * t361);
+        let gcross_vy_leg3 = t115 * (t348 - t150 * t353 + 0.5 * t361);
+        let gcross_vz_leg3 = t115 * (t94 * s_arm_leg3);
+        let t795 = gcross_vx_leg3 * t271 - gcross_vy_leg3 * t176 + gcross_vz_leg3 * t279;
+        let t797 = rate_rod_leg3 * (1.7857142857142858 * t363);
+        let t803 = 0.24 * t340;
+        let t805 = t42 * rate_cross_leg3;
+        let t806 = rate_rod_leg3 * t805;
+        let t817 = t346 * t400 + t348 * t396 + minus_c_armcross_leg3 * t394
+            - (s_cross_leg3 * t803 - t806 - t806)
+            - t353 * (t113 * t400 + t150 * t396 - s_armcross_leg3 * t394 + t368);
+        let t818 = t623 - t624;
+        let t819 = t818 + t369;
+        let t821 = t817 - t361 * t819;
+        let t822 = 1.7857142857142858 * t821;
+        let t823 = t116 * t822;
+        let t825 = t797 + t823 + t797;
+        let t826 = c_rod_leg3 * t825;
+        let t827 = t116 * t826;
+        let grod_vx_leg3 = 1.5464739353293548 * t114;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t114;
+        let t833 = grod_vx_leg3 * t271 + minus_grod_vy_leg3 * t176;
+        let t835 = 3.188775510204082 * (t363 * t805);
+        let t836 = t833 * t835;
+        let t842 = gcross_vx_leg3 * t423 - gcross_vy_leg3 * t419 + gcross_vz_leg3 * t426;
+        let t846 = grod_vx_leg3 * t423 + minus_grod_vy_leg3 * t419;
+        let t847 = t846 * t835;
+        let t853 = gcross_vy_leg3 * t439 - gcross_vx_leg3 * t434 - gcross_vz_leg3 * t445;
+        let t857 = grod_vx_leg3 * t434 + minus_grod_vy_leg3 * t439;
+        let t858 = t857 * t835;
+        let s_rod_leg3 = 1.7857142857142858 * t42;
+        let t865 = c_rod_leg3 * (1.7857142857142858 * (t821 - t806)) - s_rod_leg3 * t797;
+        let t867 = t826 + t116 * t865;
+        let t869 = t805 * t805;
+        let t872 = 3.188775510204082 * (t869 - t363 * t363);
+        let rate_dot_rod_leg3 = t115 * t819;
+        let t884 = 3.188775510204082 * t869;
+        let t887 = s_rod_leg3 * (t835 + rate_dot_rod_leg3) + c_rod_leg3 * (t345 - t884);
+        let t898 = t795 * t865 + t836;
+        let t900 = t842 * t865 + t847;
+        let t902 = t853 * t865 - t858;
+        let t903 = 1.7857142857142858 * t818;
+        let t913 = t833 * rate_dot_rod_leg3;
+        let t914 = t846 * rate_dot_rod_leg3;
+        let t915 = t857 * rate_dot_rod_leg3;
+        let t923 = t776 + 0.24 * actuator_accelerations[2];
+        let t931 = t777 + t803;
+        let t935 = s_rod_leg3 * (s_cross_leg3 * t931 + c_cross_leg3 * t923);
+        let t939 = s_cross_leg3 * t923 - c_cross_leg3 * t931;
+        let t940 = c_rod_leg3 * t939;
+        let t946 = 0.8928571428571429 * t88;
+        let t949 = t116 * t946;
+        let t958 = t946 * (t835 - rate_dot_rod_leg3) + t949 * (t884 + t345) - t339 * t825
+            - t853 * t935 + t857 * t940;
         Ok([
             [
-                actuator_accelerations[0], -t21, -t26, actuator_accelerations[0],
+                actuator_accelerations[0], -t20, -t25, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
-                t289 - t309 * t461, t309 * t503 - t197 * t508, t309 * t523 + t197 * t454, t537,
-                t309 * t542 + t197 * t544, -t553,
-                t562
+                t262 - t281 * t416, t281 * t459 - t177 * t464, t281 * t480 + t177 * t412, t491,
+                t281 * t496 + t177 * t411, -t506,
+                t515
                     - 0.10285714285714286
-                        * (4.166666666666667 * t564 + 5.444444444444445 * t537
-                            - 5.444444444444445 * t553),
-                t607 + t197 * t611,
-                t277 * t313 - (1.594387755102041 * (t17 * t452) + t594 * t454)
-                    + t309 * t610,
-                0.24 * t564,
+                        * (4.166666666666667 * t517 + 5.444444444444445 * t491
+                            - 5.444444444444445 * t506),
+                t564,
+                t178 * t289 - (t411 * t543 + t546 * t412) + t281 * t561,
+                0.24 * t517,
                 0.0,
                 0.0,
                 0.0,
@@ -4626,15 +4451,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t651 * t687 + t696,
-                t651 * t726 + t693 * t731,
-                t651 * t746 - t693 * t680,
-                t760,
-                t693 * t765 - t651 * t767,
-                -t776,
-                t562 - 0.56 * (t760 - t776),
-                t651 * t799 - t693 * t804,
-                t651 * t803,
+                t600 * t634 + t643,
+                t640 * t679 - t600 * t674,
+                t600 * t694 - t640 * t630,
+                t705,
+                t640 * t629 - t600 * t711,
+                -t720,
+                t515 - 0.56 * (t705 - t720),
+                t600 * t742 - t640 * t747,
+                t600 * t746,
                 0.0,
                 0.0,
                 0.0,
@@ -4643,34 +4468,33 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t855 * t889 - t898,
-                t855 * t928 + t895 * t933,
-                t855 * t948 + t895 * t882,
-                t962,
-                t855 * t967 + t895 * t969,
-                t978,
-                t562 - 0.56 * (t962 + t978),
-                -(t855 * t1001 + t895 * t1006),
-                t855 * t1005,
+                t795 * t827 - t836,
+                t795 * t867 + t833 * t872,
+                t795 * t887 + t833 * t823,
+                t898,
+                t795 * t903 + t833 * t822,
+                t913,
+                t515 - 0.56 * (t898 + t913),
+                -(t795 * t935 + t833 * t940),
+                t795 * t939,
                 0.0,
-                t561,
+                t514,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t466 - t473 * t461, t473 * t503 - t465 * t508,
-                t473 * t523 + t465 * t454, t539, t473 * t542 + t465 * t544, -t554,
-                t577 - 0.56 * (t539 - t554), t465 * t611 - t473 * t605, t473 * t610, 0.0,
-                actuator_accelerations[1], -t631, -t632, actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t421 - t428 * t416, t428 * t459 - t420 * t464,
+                t428 * t480 + t420 * t412, t493, t428 * t496 + t420 * t411, -t507,
+                t530 - 0.56 * (t493 - t507), t420 * t562 - t428 * t556, t428 * t561, 0.0,
+                actuator_accelerations[1], -t581, -t582, actuator_accelerations[1],
                 actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0,
-                t702 * t687 + t707, t702 * t726 + t706 * t731, t702 * t746 - t706 * t680, t762,
-                t706 * t765 - t702 * t767, -t777,
-                t577
+                t649 * t634 + t654, t653 * t679 - t649 * t674, t649 * t694 - t653 * t630, t707,
+                t653 * t629 - t649 * t711, -t721,
+                t530
                     - 0.10285714285714286
-                        * (4.166666666666667 * t783 + 5.444444444444445 * t762
-                            - 5.444444444444445 * t777),
-                t818 - t706 * t804,
-                1.594387755102041 * (t53 * t678) + t811 * t680 + t327 * t355
-                    + t702 * t803,
-                0.24 * t783,
+                        * (4.166666666666667 * t727 + 5.444444444444445 * t707
+                            - 5.444444444444445 * t721),
+                t762,
+                t629 * t750 + t753 * t630 + t300 * t328 + t649 * t746,
+                0.24 * t727,
                 0.0,
                 0.0,
                 0.0,
@@ -4678,38 +4502,37 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t904 * t889 - t909,
-                t904 * t928 + t908 * t933,
-                t904 * t948 + t908 * t882,
-                t964,
-                t904 * t967 + t908 * t969,
-                t979,
-                t577 - 0.56 * (t964 + t979),
-                -(t904 * t1001 + t908 * t1006),
-                t904 * t1005,
+                t842 * t827 - t847,
+                t842 * t867 + t846 * t872,
+                t842 * t887 + t846 * t823,
+                t900,
+                t842 * t903 + t846 * t822,
+                t914,
+                t530 - 0.56 * (t900 + t914),
+                -(t842 * t935 + t846 * t940),
+                t842 * t939,
                 0.0,
-                t576,
+                t529,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t492 * t461 + t495), t492 * t503 + t494 * t508,
-                t492 * t523 - t494 * t454, t541, t492 * t542 - t494 * t544, t555,
-                t586 - 0.56 * (t541 + t555), -(t492 * t605 + t494 * t611), t492 * t610, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t712 - t717 * t687, t711 * t731 - t717 * t726,
-                -(t717 * t746 + t711 * t680), -t764, t717 * t767 + t711 * t765, -t778,
-                t586 + 0.56 * (t764 + t778), -(t717 * t799 + t711 * t804), -(t717 * t803), 0.0,
-                actuator_accelerations[2], t835, t836, actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t447 * t416 + t450), t447 * t459 + t449 * t464,
+                t447 * t480 - t449 * t412, t495, t447 * t496 - t449 * t411, t508,
+                t539 - 0.56 * (t495 + t508), -(t447 * t556 + t449 * t562), t447 * t561, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t659 - t664 * t634, t658 * t679 + t664 * t674,
+                -(t664 * t694 + t658 * t630), -t709, t664 * t711 + t658 * t629, -t722,
+                t539 + 0.56 * (t709 + t722), -(t664 * t742 + t658 * t747), -(t664 * t746), 0.0,
+                actuator_accelerations[2], t776, t777, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0,
-                t915 * t889 + t920, t915 * t928 - t919 * t933, t915 * t948 - t919 * t882, t966,
-                t915 * t967 - t919 * t969, -t980,
-                t586
+                t853 * t827 + t858, t853 * t867 - t857 * t872, t853 * t887 - t857 * t823, t902,
+                t853 * t903 - t857 * t822, -t915,
+                t539
                     - 0.10285714285714286
-                        * (4.166666666666667 * t988 + 5.444444444444445 * t966
-                            - 5.444444444444445 * t980),
-                t1023 + t919 * t1006,
-                1.594387755102041 * (t97 * t880) + t1016 * t882 + t369 * t395
-                    + t915 * t1005,
-                0.24 * t988,
-                t585,
+                        * (4.166666666666667 * t923 + 5.444444444444445 * t902
+                            - 5.444444444444445 * t915),
+                t958,
+                t822 * t946 + t949 * t823 + t339 * t365 + t853 * t939,
+                0.24 * t923,
+                t538,
             ],
         ])
     }
@@ -4723,7 +4546,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 777 operations (248 additions, 514 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 669 intermediates.
+    /// 682 operations (210 additions, 457 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 575 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4732,394 +4555,383 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t2 = pose[0] + 0.05 - 0.2;
-        let t3 = t2 * t2;
+        let t1 = pose[0] + 0.05;
+        let t2 = t1 - 0.2;
         let t4 = pose[2] * pose[2];
-        let t6 = 0.2304 * (t3 + t4);
+        let t5 = t2 * t2 + t4;
+        let t6 = 0.2304 * t5;
         let t7 = 1.0 / t6;
         let t8 = 0.48 * t2;
-        let t9 = pose[1] * pose[1];
-        let t11 = t3 + t9 + t4;
-        let t13 = t11 - 0.3136 + 0.0576;
-        let t15 = 0.48 * pose[2];
-        let t17 = t6 - t13 * t13;
-        ::overact::guard::reach(t17, "leg1")?;
-        let t18 = ::overact::math::sqrt(t17);
-        let c_arm_leg1 = t7 * (t8 * t13 - t15 * t18);
-        let t25 = 1.0 - 3.188775510204082 * t9;
-        ::overact::guard::reach(t25, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t25);
+        let t10 = pose[1] * pose[1] + -0.3136;
+        let t11 = t5 + t10;
+        let t12 = t11 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t16 = t6 - t12 * t12;
+        ::overact::guard::reach(t16, "leg1")?;
+        let t17 = ::overact::math::sqrt(t16);
+        let c_arm_leg1 = t7 * (t8 * t12 - t14 * t17);
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t10));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t11 - (0.0576 + t9) - 0.3136 * t25) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t7 * (t15 * t13 + t8 * t18);
-        let t37 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t18 / t37;
+        let t25 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t11 + -0.0576) / t25;
+        let minus_s_arm_leg1 = t7 * (t14 * t12 + t8 * t17);
+        let s_cross_leg1 = t17 / t25;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t41 = 1.0 / s_cross_leg1;
-        let t42 = 4.166666666666667 * t41;
-        let garm_vx_leg1 = c_armcross_leg1 * t42;
+        let t35 = 1.0 / s_cross_leg1;
+        let t36 = 4.166666666666667 * t35;
+        let garm_vx_leg1 = c_armcross_leg1 * t36;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t50 = 0.24 * c_cross_leg1;
-        let t53 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
-        let t54 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t54;
-        let t56 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t42 * (t53 + t56 * twist[1]);
-        let t60 = rate_arm_leg1 * rate_arm_leg1;
-        let t62 = c_cross_leg1 * t41;
-        let garm_vy_leg1 = t42 * t56;
-        let t65 = t50 * garm_vy_leg1;
-        let t71 = t62 * t53 + t65 * twist[1] + s_armcross_leg1 * twist[0]
+        let t44 = 0.24 * c_cross_leg1;
+        let t48 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t48;
+        let t50 = pose[1] * grod_vy_leg1;
+        let t51 = t50 * twist[1];
+        let rate_arm_leg1 = t36
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t51);
+        let t54 = rate_arm_leg1 * rate_arm_leg1;
+        let t56 = 0.56 * c_rod_leg1;
+        let t61 = t44 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t71;
-        let t73 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t61;
+        let t63 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t75 = rate_rod_leg1 * rate_rod_leg1;
-        let t76 = t73 + t75;
-        let t79 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t50 * t60 + t37 * t76;
-        let t80 = pose[1] * minus_rate_cross_leg1;
-        let t81 = minus_rate_cross_leg1 * t80;
-        let t84 = acceleration[1] - (t81 - pose[1] * t76);
-        let rate_dot_arm_leg1 = t42 * (t79 + t56 * t84);
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t42;
-        let t93 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t96 = pose[0] - 0.025 + 0.1;
-        let t97 = 0.5 * t96;
-        let t98 = 0.8660254037844387 * t93 - t97;
-        let t101 = 0.2304 * (t98 * t98 + t4);
-        let t102 = t96 * t96;
-        let t105 = t102 + t93 * t93 + t4;
-        let t107 = t105 - 0.3136 + 0.0576;
-        let t109 = t101 - t107 * t107;
-        ::overact::guard::reach(t109, "leg2")?;
-        let t110 = ::overact::math::sqrt(t109);
-        let t112 = 0.8660254037844387 * t96;
-        let t114 = t112 + 0.5 * t93;
-        let t115 = t114 * t114;
-        let t117 = 1.0 - 3.188775510204082 * t115;
-        ::overact::guard::reach(t117, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t117);
+        let t65 = rate_rod_leg1 * rate_rod_leg1;
+        let t71 = acceleration[1] + pose[1] * t65;
+        let t73 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t44 * t54 + t56 * (t63 + t65) + t50 * t71;
+        let rate_dot_arm_leg1 = t36 * t73;
+        let garm_vy_leg1 = t36 * t50;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t36;
+        let t80 = t1 + 0.025;
+        let t81 = t80 * t80;
+        let t83 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t87 = t81 + t83 * t83 + t4 + -0.3136;
+        let t90 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t92 = 0.8660254037844387 * t80 - 0.5 * t90;
+        let t93 = pose[1] + t92;
+        let t95 = 0.3136 - t93 * t93;
+        let t97 = 0.2304 * (t87 + t95);
+        let t98 = t87 + 0.0576;
+        let t100 = t97 - t98 * t98;
+        ::overact::guard::reach(t100, "leg2")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let t102 = 3.188775510204082 * t95;
+        ::overact::guard::reach(t102, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t102);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t119 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t110 / t119;
+        let t104 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t101 / t104;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t121 = 1.0 / s_cross_leg2;
-        let t122 = 4.166666666666667 * t121;
-        let t123 = 1.0 / c_rod_leg2;
-        let t124 = 1.7857142857142858 * t123;
-        let t125 = t114 * t124;
-        let t127 = 1.0 / t101;
-        let t128 = 0.48 * t98;
-        let c_arm_leg2 = t127 * (t128 * t107 - t15 * t110);
-        let c_cross_leg2 = (t105 - (0.0576 + t115) - 0.3136 * t117)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t127 * (t15 * t107 + t128 * t110);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t146 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t122 * (0.8660254037844387 * t125 - t146);
-        let t149 = 0.8660254037844387 * c_armcross_leg2;
+        let t106 = 1.0 / s_cross_leg2;
+        let t107 = 4.166666666666667 * t106;
+        let t108 = 1.0 / c_rod_leg2;
+        let t109 = 1.7857142857142858 * t108;
+        let t110 = t93 * t109;
+        let t112 = 1.0 / t97;
+        let t115 = 0.5 * t80;
+        let t117 = 0.48 * (0.8660254037844387 * t83 - t115);
+        let minus_s_arm_leg2 = t112 * (t14 * t98 + t117 * t101);
+        let t121 = t106 * minus_s_arm_leg2;
+        let c_arm_leg2 = t112 * (t117 * t98 - t14 * t101);
+        let c_cross_leg2 = (-0.0576 + t87) / t104;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t158 = 0.24 * c_cross_leg2;
-        let t163 = t149 * twist[1] - t146 * twist[0] - s_armcross_leg2 * twist[2];
-        let t164 = 0.8660254037844387 * twist[0];
-        let t165 = 0.5 * twist[1];
-        let t166 = t164 + t165;
-        let rate_arm_leg2 = t122 * (t163 + t125 * t166);
-        let t170 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t124 * t166;
-        let t173 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t174 = 0.5 * s_armcross_leg2;
-        let t176 = 0.8660254037844387 * s_armcross_leg2;
-        let t181 = c_cross_leg2 * t121;
-        let t185 = t158 * (t122 * t125);
-        let t187 = t174 * twist[0] - t176 * twist[1] - c_armcross_leg2 * twist[2]
-            - t181 * t163 - t185 * t166;
-        let rate_cross_leg2 = t124 * t187;
-        let t189 = rate_cross_leg2 * rate_cross_leg2;
-        let t190 = t173 + t189;
-        let t193 = t149 * acceleration[1] - t146 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t158 * t170 + t119 * t190;
-        let t194 = 0.8660254037844387 * acceleration[0];
-        let t195 = 0.5 * acceleration[1];
-        let t196 = t194 + t195;
-        let t198 = t114 * rate_cross_leg2;
-        let t199 = rate_cross_leg2 * t198;
-        let t201 = t196 + t114 * t190 - t199;
-        let rate_dot_arm_leg2 = t122 * (t193 + t125 * t201);
-        let garm_vy_leg2 = t122 * (t149 + 0.5 * t125);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t122;
-        let t213 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t215 = t97 + 0.8660254037844387 * t213;
-        let t218 = 0.2304 * (t215 * t215 + t4);
-        let t221 = t102 + t213 * t213 + t4;
-        let t223 = t221 - 0.3136 + 0.0576;
-        let t225 = t218 - t223 * t223;
-        ::overact::guard::reach(t225, "leg3")?;
-        let t226 = ::overact::math::sqrt(t225);
-        let t229 = t112 - 0.5 * t213;
-        let t230 = t229 * t229;
-        let t232 = 1.0 - 3.188775510204082 * t230;
-        ::overact::guard::reach(t232, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t232);
+        let t131 = c_cross_leg2 * t106;
+        let c_armcross_leg2 = t121 + s_armcross_leg2 * t131;
+        let t134 = 0.5 * c_armcross_leg2;
+        let t135 = 0.8660254037844387 * t110 - t134;
+        let garm_vx_leg2 = t107 * t135;
+        let t137 = 0.8660254037844387 * c_armcross_leg2;
+        let t143 = 0.24 * c_cross_leg2;
+        let t149 = 0.8660254037844387 * twist[0];
+        let t150 = 0.5 * twist[1];
+        let t151 = t149 + t150;
+        let t152 = t110 * t151;
+        let rate_arm_leg2 = t107
+            * (t137 * twist[1] - t134 * twist[0] - s_armcross_leg2 * twist[2] + t152);
+        let t155 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t109 * t151;
+        let t159 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t160 = 0.5 * s_armcross_leg2;
+        let t162 = 0.8660254037844387 * s_armcross_leg2;
+        let t168 = t160 * twist[0] - t162 * twist[1] - c_armcross_leg2 * twist[2]
+            - t143 * rate_arm_leg2;
+        let rate_cross_leg2 = t109 * t168;
+        let t170 = rate_cross_leg2 * rate_cross_leg2;
+        let t174 = t137 * acceleration[1] - t134 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t143 * t155
+            + 0.56 * c_rod_leg2 * (t159 + t170);
+        let t175 = 0.8660254037844387 * acceleration[0];
+        let t176 = 0.5 * acceleration[1];
+        let t177 = t175 + t176;
+        let t179 = t177 + t93 * t159;
+        let rate_dot_arm_leg2 = t107 * (t174 + t110 * t179);
+        let garm_vy_leg2 = t107 * (t137 + 0.5 * t110);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t107;
+        let t193 = t81 + t90 * t90 + t4 + -0.3136;
+        let t195 = 0.3136 - t92 * t92;
+        let t197 = 0.2304 * (t193 + t195);
+        let t198 = t193 + 0.0576;
+        let t200 = t197 - t198 * t198;
+        ::overact::guard::reach(t200, "leg3")?;
+        let t201 = ::overact::math::sqrt(t200);
+        let t202 = 3.188775510204082 * t195;
+        ::overact::guard::reach(t202, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t202);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t234 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t226 / t234;
+        let t204 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t201 / t204;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t236 = 1.0 / s_cross_leg3;
-        let t237 = 4.166666666666667 * t236;
-        let t238 = 1.0 / t218;
-        let t239 = 0.48 * t215;
-        let minus_c_arm_leg3 = t238 * (t239 * t223 + t15 * t226);
-        let c_cross_leg3 = (t221 - (0.0576 + t230) - 0.3136 * t232)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t238 * (t239 * t226 - t15 * t223);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t257 = 0.5 * minus_c_armcross_leg3;
-        let t258 = 1.0 / c_rod_leg3;
-        let t259 = 1.7857142857142858 * t258;
-        let t260 = t229 * t259;
-        let garm_vx_leg3 = t237 * (t257 + 0.8660254037844387 * t260);
-        let t265 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t206 = 1.0 / s_cross_leg3;
+        let t207 = 4.166666666666667 * t206;
+        let t208 = 1.0 / t197;
+        let t211 = 0.48 * (t115 + 0.8660254037844387 * t90);
+        let s_arm_leg3 = t208 * (t211 * t201 - t14 * t198);
+        let t216 = t206 * s_arm_leg3;
+        let c_cross_leg3 = (-0.0576 + t193) / t204;
+        let minus_c_arm_leg3 = t208 * (t211 * t198 + t14 * t201);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t273 = 0.24 * c_cross_leg3;
-        let t278 = t257 * twist[0] + t265 * twist[1] - s_armcross_leg3 * twist[2];
-        let t279 = t164 - t165;
-        let rate_arm_leg3 = t237 * (t278 + t260 * t279);
-        let t283 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t259 * t279;
-        let t286 = rate_rod_leg3 * rate_rod_leg3;
-        let t287 = 0.5 * s_armcross_leg3;
-        let t289 = 0.8660254037844387 * s_armcross_leg3;
-        let t294 = c_cross_leg3 * t236;
-        let t298 = t273 * (t237 * t260);
-        let t300 = t287 * twist[0] + t289 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t294 * t278 - t298 * t279;
-        let rate_cross_leg3 = t259 * t300;
-        let t302 = rate_cross_leg3 * rate_cross_leg3;
-        let t303 = t286 + t302;
-        let t306 = t257 * acceleration[0] + t265 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t273 * t283 + t234 * t303;
-        let t307 = t194 - t195;
-        let t308 = t229 * rate_cross_leg3;
-        let t309 = rate_cross_leg3 * t308;
-        let t312 = t307 - (t309 - t229 * t303);
-        let rate_dot_arm_leg3 = t237 * (t306 + t260 * t312);
-        let garm_vy_leg3 = t237 * (t265 - 0.5 * t260);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t237;
-        let t323 = 9.81 * c_arm_leg1;
-        let t327 = 9.81 * c_arm_leg2;
-        let t331 = 9.81 * minus_c_arm_leg3;
-        let t335 = 9.81 * minus_s_arm_leg1;
-        let t339 = 9.81 * minus_s_arm_leg2;
-        let t343 = 9.81 * s_arm_leg3;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t62 + s_armcross_leg1);
+        let t226 = c_cross_leg3 * t206;
+        let minus_c_armcross_leg3 = t216 - s_armcross_leg3 * t226;
+        let t229 = 0.5 * minus_c_armcross_leg3;
+        let t230 = 1.0 / c_rod_leg3;
+        let t231 = 1.7857142857142858 * t230;
+        let t232 = t92 * t231;
+        let t234 = t229 + 0.8660254037844387 * t232;
+        let garm_vx_leg3 = t207 * t234;
+        let t237 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t242 = 0.24 * c_cross_leg3;
+        let t248 = t149 - t150;
+        let t249 = t232 * t248;
+        let rate_arm_leg3 = t207
+            * (t229 * twist[0] + t237 * twist[1] - s_armcross_leg3 * twist[2] + t249);
+        let t252 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t231 * t248;
+        let t256 = rate_rod_leg3 * rate_rod_leg3;
+        let t257 = 0.5 * s_armcross_leg3;
+        let t259 = 0.8660254037844387 * s_armcross_leg3;
+        let t265 = t257 * twist[0] + t259 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t242 * rate_arm_leg3;
+        let rate_cross_leg3 = t231 * t265;
+        let t267 = rate_cross_leg3 * rate_cross_leg3;
+        let t271 = t229 * acceleration[0] + t237 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t242 * t252
+            + 0.56 * c_rod_leg3 * (t256 + t267);
+        let t272 = t175 - t176;
+        let t274 = t272 + t92 * t256;
+        let rate_dot_arm_leg3 = t207 * (t271 + t232 * t274);
+        let garm_vy_leg3 = t207 * (t237 - 0.5 * t232);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t207;
+        let t285 = 9.81 * c_arm_leg1;
+        let t289 = 9.81 * c_arm_leg2;
+        let t293 = 9.81 * minus_c_arm_leg3;
+        let t297 = 9.81 * minus_s_arm_leg1;
+        let t301 = 9.81 * minus_s_arm_leg2;
+        let t305 = 9.81 * s_arm_leg3;
+        let t327 = t35 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t327;
+        let t330 = rate_rod_leg1 * (1.7857142857142858 * t61);
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t378 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t382 = t62 * t79 + t65 * t84 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t60 + t378
-            + t378;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t382;
-        let t384 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t386 = rate_rod_leg1 * (1.7857142857142858 * t71);
-        let t387 = t384 + t386;
-        let t390 = c_rod_leg1 * (1.7857142857142858 * t378);
-        let t391 = s_rod_leg1 * t387 + t390;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t65;
-        let t395 = 3.188775510204082 * t81;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t62);
-        let gcross_vx_leg2 = t124 * (t146 * t181 + t174 - 0.8660254037844387 * t185);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t114;
-        let t415 = t114 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t418 = t174 * acceleration[0] - t176 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2]
-            - (0.24 * s_cross_leg2 * t170 - t415 - t415);
-        let t422 = t418 - t181 * t193 - t185 * t201;
-        let rate_dot_cross_leg2 = t124 * t422;
-        let t424 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t426 = minus_rate_rod_leg2 * (1.7857142857142858 * t187);
-        let t427 = t424 + t426;
-        let t430 = c_rod_leg2 * (1.7857142857142858 * t415);
-        let t431 = minus_s_rod_leg2 * t427 + t430;
-        let t433 = 2.76156059880242 * t199;
-        let minus_gcross_vy_leg2 = t124 * (t149 * t181 + t176 + 0.5 * t185);
-        let t441 = 1.594387755102041 * t199;
-        let gcross_vz_leg2 = t124 * (s_armcross_leg2 * t181 - c_armcross_leg2);
-        let gcross_vx_leg3 = t259 * (t287 - t257 * t294 - 0.8660254037844387 * t298);
-        let s_rod_leg3 = 1.7857142857142858 * t229;
-        let t461 = t229 * (rate_cross_leg3 * rate_rod_leg3);
-        let t464 = t287 * acceleration[0] + t289 * acceleration[1]
+        let t332 = 0.24 * rate_dot_arm_leg1;
+        let t337 = 0.24 * t54;
+        let t339 = t51 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t332 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t337 + t339 + t339);
+        let t345 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t347 = t330 + t345 + t330;
+        let t348 = c_rod_leg1 * t347;
+        let t349 = t50 * t348;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t44 * garm_vy_leg1);
+        let t354 = pose[1] * minus_rate_cross_leg1;
+        let t356 = 3.188775510204082 * (minus_rate_cross_leg1 * t354);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t327;
+        let gcross_vx_leg2 = t109 * (t160 - t135 * t131);
+        let t364 = minus_rate_rod_leg2 * (1.7857142857142858 * t168);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t93;
+        let t371 = 0.24 * t155;
+        let t373 = t152 * rate_cross_leg2;
+        let t377 = 0.24 * rate_dot_arm_leg2;
+        let t379 = t160 * acceleration[0] - t162 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t371 - t373 - t373)
+            - c_cross_leg2 * t377;
+        let rate_dot_cross_leg2 = t109 * t379;
+        let t381 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t383 = t364 + t381 + t364;
+        let t384 = c_rod_leg2 * t383;
+        let t385 = t110 * t384;
+        let t387 = t93 * rate_cross_leg2;
+        let t388 = rate_cross_leg2 * t387;
+        let t389 = 2.76156059880242 * t388;
+        let minus_gcross_vy_leg2 = t109 * (t162 + t143 * garm_vy_leg2);
+        let t395 = 1.594387755102041 * t388;
+        let minus_gcross_vz_leg2 = t109 * t121;
+        let gcross_vx_leg3 = t231 * (t257 - t234 * t226);
+        let t403 = rate_rod_leg3 * (1.7857142857142858 * t265);
+        let s_rod_leg3 = 1.7857142857142858 * t92;
+        let t410 = 0.24 * t252;
+        let t412 = t249 * rate_cross_leg3;
+        let t416 = 0.24 * rate_dot_arm_leg3;
+        let t418 = t257 * acceleration[0] + t259 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (0.24 * s_cross_leg3 * t283 - t461 - t461);
-        let t468 = t464 - t294 * t306 - t298 * t312;
-        let rate_dot_cross_leg3 = t259 * t468;
-        let t470 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t472 = rate_rod_leg3 * (1.7857142857142858 * t300);
-        let t473 = t470 + t472;
-        let t476 = c_rod_leg3 * (1.7857142857142858 * t461);
-        let t477 = s_rod_leg3 * t473 + t476;
-        let t479 = 2.76156059880242 * t309;
-        let gcross_vy_leg3 = t259 * (t289 - t265 * t294 + 0.5 * t298);
-        let t487 = 1.594387755102041 * t309;
-        let gcross_vz_leg3 = t259 * (s_armcross_leg3 * t294 + minus_c_armcross_leg3);
-        let t493 = t378 - t382;
-        let t497 = t386 + t387;
-        let t499 = 3.188775510204082 * (pose[1] * (t378 + t493)) - c_rod_leg1 * t497;
-        let t501 = t80 * t80;
-        let t509 = t422 - t415;
-        let t513 = t426 + t427;
-        let t515 = 3.188775510204082 * (t114 * (t415 - t509)) - c_rod_leg2 * t513;
-        let t517 = t198 * t198;
-        let t520 = t123 * (t517 - t187 * t187);
-        let t527 = t472 + t473;
-        let t529 = t468 - t461;
-        let t533 = c_rod_leg3 * t527 - 3.188775510204082 * (t229 * (t461 - t529));
-        let t535 = t308 * t308;
-        let t538 = t258 * (t535 - t300 * t300);
-        let t546 = 3.188775510204082 * (t71 * t80);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t84;
-        let t550 = 3.188775510204082 * t501;
-        let t553 = s_rod_leg1 * (t546 + rate_dot_rod_leg1) + c_rod_leg1 * (t75 - t550);
-        let t560 = 3.188775510204082 * (t187 * t198);
-        let minus_rate_dot_rod_leg2 = t124 * t201;
-        let t564 = 3.188775510204082 * t517;
-        let t567 = minus_s_rod_leg2 * (t560 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t173 - t564);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t123;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t123;
-        let t578 = 3.188775510204082 * (t300 * t308);
-        let rate_dot_rod_leg3 = t259 * t312;
-        let t582 = 3.188775510204082 * t535;
-        let t585 = s_rod_leg3 * (t578 + rate_dot_rod_leg3) + c_rod_leg3 * (t286 - t582);
-        let grod_vx_leg3 = 1.5464739353293548 * t258;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t258;
-        let t597 = t390 + c_rod_leg1 * (1.7857142857142858 * t493);
-        let t604 = c_rod_leg2 * (1.7857142857142858 * t509) - t430;
-        let t612 = c_rod_leg3 * (1.7857142857142858 * t529) - t476;
-        let t618 = 1.7857142857142858 * acceleration[1];
-        let t624 = 1.7857142857142858 * t196;
-        let t632 = 1.7857142857142858 * t307;
-        let t649 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t654 = 0.8928571428571429 * t18 * (t546 - rate_dot_rod_leg1)
-            + t649 * (t550 + t75) + t50 * t497;
-        let t657 = 0.24 * rate_dot_arm_leg1 - t323;
-        let t660 = t335 - 0.24 * t60;
-        let t663 = s_rod_leg1 * (c_cross_leg1 * t657 - s_cross_leg1 * t660);
-        let t671 = c_cross_leg1 * t660 + s_cross_leg1 * t657;
-        let t681 = 0.42857142857142855 * (t114 * s_cross_leg2);
-        let t686 = 0.8928571428571429 * t110 * (minus_rate_dot_rod_leg2 - t560)
-            - t681 * (t564 + t173) + t158 * t513;
-        let t689 = 0.24 * rate_dot_arm_leg2 - t327;
-        let t692 = t339 - 0.24 * t170;
-        let t695 = minus_s_rod_leg2 * (c_cross_leg2 * t689 - s_cross_leg2 * t692);
-        let t700 = c_cross_leg2 * t692 + s_cross_leg2 * t689;
-        let t716 = 0.42857142857142855 * (t229 * s_cross_leg3);
-        let t721 = 0.8928571428571429 * t226 * (t578 - rate_dot_rod_leg3)
-            + t716 * (t582 + t286) - t273 * t527;
-        let t724 = t343 + 0.24 * t283;
-        let t727 = t331 + 0.24 * rate_dot_arm_leg3;
-        let t730 = s_rod_leg3 * (s_cross_leg3 * t724 + c_cross_leg3 * t727);
-        let t735 = s_cross_leg3 * t727 - c_cross_leg3 * t724;
-        let t752 = t50 * t73 - (1.594387755102041 * (t18 * t382) + t384 * t649);
-        let t767 = 1.594387755102041 * (t110 * t422) + t424 * t681 + t158 * t189;
-        let t782 = 1.594387755102041 * (t226 * t468) + t470 * t716 + t273 * t302;
+            - (s_cross_leg3 * t410 - t412 - t412) - c_cross_leg3 * t416;
+        let rate_dot_cross_leg3 = t231 * t418;
+        let t420 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t422 = t403 + t420 + t403;
+        let t423 = c_rod_leg3 * t422;
+        let t424 = t232 * t423;
+        let t426 = t92 * rate_cross_leg3;
+        let t427 = rate_cross_leg3 * t426;
+        let t428 = 2.76156059880242 * t427;
+        let gcross_vy_leg3 = t231 * (t259 - t242 * garm_vy_leg3);
+        let t434 = 1.594387755102041 * t427;
+        let gcross_vz_leg3 = t231 * t216;
+        let t438 = t349 - minus_rate_dot_cross_leg1;
+        let t440 = t50 * t438 - t348;
+        let t442 = t354 * t354;
+        let t450 = rate_dot_cross_leg2 - t385;
+        let t452 = t110 * t450 + t384;
+        let t454 = t387 * t387;
+        let t457 = t108 * (t454 - t168 * t168);
+        let t464 = rate_dot_cross_leg3 - t424;
+        let t466 = t423 + t232 * t464;
+        let t468 = t426 * t426;
+        let t471 = t230 * (t468 - t265 * t265);
+        let t478 = t56 * t356;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t71;
+        let t482 = 3.188775510204082 * t442;
+        let t485 = s_rod_leg1 * (t478 + rate_dot_rod_leg1) + c_rod_leg1 * (t65 - t482);
+        let t492 = 3.188775510204082 * (t168 * t387);
+        let minus_rate_dot_rod_leg2 = t109 * t179;
+        let t496 = 3.188775510204082 * t454;
+        let t499 = minus_s_rod_leg2 * (t492 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t159 - t496);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t108;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t108;
+        let t510 = 3.188775510204082 * (t265 * t426);
+        let rate_dot_rod_leg3 = t231 * t274;
+        let t514 = 3.188775510204082 * t468;
+        let t517 = s_rod_leg3 * (t510 + rate_dot_rod_leg3) + c_rod_leg3 * (t256 - t514);
+        let grod_vx_leg3 = 1.5464739353293548 * t230;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t230;
+        let t541 = 1.7857142857142858 * acceleration[1];
+        let t547 = 1.7857142857142858 * t177;
+        let t555 = 1.7857142857142858 * t272;
+        let t568 = 0.8928571428571429 * t17;
+        let t576 = t568 * (t478 - rate_dot_rod_leg1) + t50 * t568 * (t482 + t65)
+            + t44 * t347;
+        let t578 = t332 - t285;
+        let t580 = t297 - t337;
+        let t583 = s_rod_leg1 * (c_cross_leg1 * t578 - s_cross_leg1 * t580);
+        let t591 = c_cross_leg1 * t580 + s_cross_leg1 * t578;
+        let t597 = 0.8928571428571429 * t101;
+        let t605 = t597 * (minus_rate_dot_rod_leg2 - t492) - t110 * t597 * (t496 + t159)
+            + t143 * t383;
+        let t607 = t377 - t289;
+        let t609 = t301 - t371;
+        let t612 = minus_s_rod_leg2 * (c_cross_leg2 * t607 - s_cross_leg2 * t609);
+        let t617 = c_cross_leg2 * t609 + s_cross_leg2 * t607;
+        let t628 = 0.8928571428571429 * t201;
+        let t636 = t628 * (t510 - rate_dot_rod_leg3) + t232 * t628 * (t514 + t256)
+            - t242 * t422;
+        let t638 = t305 + t410;
+        let t640 = t293 + t416;
+        let t643 = s_rod_leg3 * (s_cross_leg3 * t638 + c_cross_leg3 * t640);
+        let t648 = s_cross_leg3 * t640 - c_cross_leg3 * t638;
+        let t662 = t44 * t63 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
+        let t675 = rate_dot_cross_leg2 * (0.24 * s_cross_leg2) + t143 * t170;
+        let t688 = rate_dot_cross_leg3 * (0.24 * s_cross_leg3) + t242 * t267;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
-                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t323), -(garm_vx_leg2 * t327),
-                garm_vx_leg3 * t331, -(garm_vx_leg1 * t335), -(garm_vx_leg2 * t339),
-                garm_vx_leg3 * t343, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t285), -(garm_vx_leg2 * t289),
+                garm_vx_leg3 * t293, -(garm_vx_leg1 * t297), -(garm_vx_leg2 * t301),
+                garm_vx_leg3 * t305, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, minus_gcross_vx_leg1 * t391, gcross_vx_leg2 * t431 - t433,
-                gcross_vx_leg3 * t477 - t479, -(minus_gcross_vx_leg1 * t499),
-                gcross_vx_leg2 * t515 - 4.9313582121471775 * t520,
-                gcross_vx_leg3 * t533 + 4.9313582121471775 * t538, -(minus_gcross_vx_leg1 * t553),
-                gcross_vx_leg2 * t567 + minus_grod_vx_leg2 * t424,
-                gcross_vx_leg3 * t585 + grod_vx_leg3 * t470, -(minus_gcross_vx_leg1 * t597),
-                gcross_vx_leg2 * t604 + t433, gcross_vx_leg3 * t612 + t479,
-                -(minus_gcross_vx_leg1 * t618),
-                -(gcross_vx_leg2 * t624 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t632 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                garm_vx_leg3, minus_gcross_vx_leg1 * t349, gcross_vx_leg2 * t385 - t389,
+                gcross_vx_leg3 * t424 - t428, -(minus_gcross_vx_leg1 * t440),
+                -(gcross_vx_leg2 * t452 + 4.9313582121471775 * t457),
+                gcross_vx_leg3 * t466 + 4.9313582121471775 * t471, -(minus_gcross_vx_leg1 * t485),
+                gcross_vx_leg2 * t499 + minus_grod_vx_leg2 * t381,
+                gcross_vx_leg3 * t517 + grod_vx_leg3 * t420, -(minus_gcross_vx_leg1 * t438),
+                gcross_vx_leg2 * t450 + t389, gcross_vx_leg3 * t464 + t428,
+                -(minus_gcross_vx_leg1 * t541),
+                -(gcross_vx_leg2 * t547 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t555 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t654 + minus_gcross_vx_leg1 * t663,
-                garm_vx_leg2 * t686 + gcross_vx_leg2 * t695
-                    + minus_grod_vx_leg2 * (c_rod_leg2 * t700),
-                garm_vx_leg3 * t721 - gcross_vx_leg3 * t730
-                    - grod_vx_leg3 * (c_rod_leg3 * t735),
-                garm_vx_leg1 * t752 - minus_gcross_vx_leg1 * t671,
-                garm_vx_leg2 * t767 + gcross_vx_leg2 * t700,
-                garm_vx_leg3 * t782 + gcross_vx_leg3 * t735,
+                garm_vx_leg1 * t576 + minus_gcross_vx_leg1 * t583,
+                garm_vx_leg2 * t605 + gcross_vx_leg2 * t612 + 1.5464739353293548 * t617,
+                garm_vx_leg3 * t636 - gcross_vx_leg3 * t643 - 1.5464739353293548 * t648,
+                garm_vx_leg1 * t662 - minus_gcross_vx_leg1 * t591,
+                garm_vx_leg2 * t675 + gcross_vx_leg2 * t617,
+                garm_vx_leg3 * t688 + gcross_vx_leg3 * t648,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t323), -(garm_vy_leg2 * t327),
-                garm_vy_leg3 * t331, -(garm_vy_leg1 * t335), -(garm_vy_leg2 * t339),
-                garm_vy_leg3 * t343, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t285), -(garm_vy_leg2 * t289),
+                garm_vy_leg3 * t293, -(garm_vy_leg1 * t297), -(garm_vy_leg2 * t301),
+                garm_vy_leg3 * t305, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
                 garm_vy_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, minus_gcross_vy_leg1 * t391 - t395,
-                -(minus_gcross_vy_leg2 * t431 + t441), gcross_vy_leg3 * t477 + t487,
-                5.694241982507289 * (t54 * (t501 - t71 * t71))
-                    - minus_gcross_vy_leg1 * t499,
-                -(minus_gcross_vy_leg2 * t515 + 2.8471209912536444 * t520),
-                gcross_vy_leg3 * t533 - 2.8471209912536444 * t538,
-                -(minus_gcross_vy_leg1 * t553 + grod_vy_leg1 * t384),
-                minus_grod_vy_leg2 * t424 - minus_gcross_vy_leg2 * t567,
-                gcross_vy_leg3 * t585 - minus_grod_vy_leg3 * t470,
-                t395 - minus_gcross_vy_leg1 * t597,
-                t441 - minus_gcross_vy_leg2 * t604,
-                gcross_vy_leg3 * t612 - t487,
-                -(minus_gcross_vy_leg1 * t618
+                garm_vy_leg3, minus_gcross_vy_leg1 * t349 - t356,
+                -(minus_gcross_vy_leg2 * t385 + t395), gcross_vy_leg3 * t424 + t434,
+                5.694241982507289 * (t48 * (t442 - t61 * t61))
+                    - minus_gcross_vy_leg1 * t440,
+                -(2.8471209912536444 * t457 - minus_gcross_vy_leg2 * t452),
+                gcross_vy_leg3 * t466 - 2.8471209912536444 * t471,
+                -(minus_gcross_vy_leg1 * t485 + grod_vy_leg1 * t345),
+                minus_grod_vy_leg2 * t381 - minus_gcross_vy_leg2 * t499,
+                gcross_vy_leg3 * t517 - minus_grod_vy_leg3 * t420,
+                t356 - minus_gcross_vy_leg1 * t438,
+                t395 - minus_gcross_vy_leg2 * t450,
+                gcross_vy_leg3 * t464 - t434,
+                -(minus_gcross_vy_leg1 * t541
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t624 - 0.8928571428571429 * rate_dot_cross_leg2,
-                gcross_vy_leg3 * t632 - 0.8928571428571429 * rate_dot_cross_leg3,
+                minus_gcross_vy_leg2 * t547 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t555 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t654 + minus_gcross_vy_leg1 * t663
-                    - 1.7857142857142858 * t671,
-                garm_vy_leg2 * t686 - minus_gcross_vy_leg2 * t695
-                    + 0.8928571428571429 * t700,
-                garm_vy_leg3 * t721 - gcross_vy_leg3 * t730 + 0.8928571428571429 * t735,
-                garm_vy_leg1 * t752 - minus_gcross_vy_leg1 * t671,
-                garm_vy_leg2 * t767 - minus_gcross_vy_leg2 * t700,
-                garm_vy_leg3 * t782 + gcross_vy_leg3 * t735,
+                garm_vy_leg1 * t576 + minus_gcross_vy_leg1 * t583
+                    - 1.7857142857142858 * t591,
+                garm_vy_leg2 * t605 - minus_gcross_vy_leg2 * t612
+                    + 0.8928571428571429 * t617,
+                garm_vy_leg3 * t636 - gcross_vy_leg3 * t643 + 0.8928571428571429 * t648,
+                garm_vy_leg1 * t662 - minus_gcross_vy_leg1 * t591,
+                garm_vy_leg2 * t675 - minus_gcross_vy_leg2 * t617,
+                garm_vy_leg3 * t688 + gcross_vy_leg3 * t648,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t323,
-                minus_garm_vz_leg2 * t327, -(minus_garm_vz_leg3 * t331), minus_garm_vz_leg1 * t335,
-                minus_garm_vz_leg2 * t339, -(minus_garm_vz_leg3 * t343),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t285,
+                minus_garm_vz_leg2 * t289, -(minus_garm_vz_leg3 * t293), minus_garm_vz_leg1 * t297,
+                minus_garm_vz_leg2 * t301, -(minus_garm_vz_leg3 * t305),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t391,
-                gcross_vz_leg2 * t431, gcross_vz_leg3 * t477, -(minus_gcross_vz_leg1 * t499),
-                gcross_vz_leg2 * t515, gcross_vz_leg3 * t533, -(minus_gcross_vz_leg1 * t553),
-                gcross_vz_leg2 * t567, gcross_vz_leg3 * t585, -(minus_gcross_vz_leg1 * t597),
-                gcross_vz_leg2 * t604, gcross_vz_leg3 * t612, -(minus_gcross_vz_leg1 * t618),
-                -(gcross_vz_leg2 * t624), gcross_vz_leg3 * t632, 0.0, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t663 - minus_garm_vz_leg1 * t654,
-                gcross_vz_leg2 * t695 - minus_garm_vz_leg2 * t686,
-                -(minus_garm_vz_leg3 * t721 + gcross_vz_leg3 * t730),
-                -(minus_garm_vz_leg1 * t752 + minus_gcross_vz_leg1 * t671),
-                gcross_vz_leg2 * t700 - minus_garm_vz_leg2 * t767,
-                gcross_vz_leg3 * t735 - minus_garm_vz_leg3 * t782,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t349,
+                -(minus_gcross_vz_leg2 * t385), gcross_vz_leg3 * t424,
+                -(minus_gcross_vz_leg1 * t440), minus_gcross_vz_leg2 * t452, gcross_vz_leg3 * t466,
+                -(minus_gcross_vz_leg1 * t485), -(minus_gcross_vz_leg2 * t499),
+                gcross_vz_leg3 * t517, -(minus_gcross_vz_leg1 * t438),
+                -(minus_gcross_vz_leg2 * t450), gcross_vz_leg3 * t464,
+                -(minus_gcross_vz_leg1 * t541), minus_gcross_vz_leg2 * t547, gcross_vz_leg3 * t555,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t583 - minus_garm_vz_leg1 * t576,
+                -(minus_gcross_vz_leg2 * t612 + minus_garm_vz_leg2 * t605),
+                -(minus_garm_vz_leg3 * t636 + gcross_vz_leg3 * t643),
+                -(minus_garm_vz_leg1 * t662 + minus_gcross_vz_leg1 * t591),
+                -(minus_gcross_vz_leg2 * t617 + minus_garm_vz_leg2 * t675),
+                gcross_vz_leg3 * t648 - minus_garm_vz_leg3 * t688,
             ],
         ])
     }
@@ -5134,7 +4946,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 664 operations (200 additions, 458 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 568 intermediates.
+    /// 584 operations (171 additions, 407 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 488 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5163,317 +4975,299 @@ impl Delta {
         let t12 = 4.166666666666667 * t11;
         let garm_vx_leg1 = c_armcross_leg1 * t12;
         let t17 = 0.24 * c_cross_leg1;
-        let t20 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let t23 = 1.0 / c_rod_leg1;
         let t24 = s_rod_leg1 * t23;
-        let rate_arm_leg1 = t12 * (t20 + t24 * twist[1]);
+        let t25 = t24 * twist[1];
+        let rate_arm_leg1 = t12
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t25);
         let t28 = rate_arm_leg1 * rate_arm_leg1;
+        let t30 = 0.56 * c_rod_leg1;
         let grod_vy_leg1 = 1.7857142857142858 * t23;
-        let t32 = c_cross_leg1 * t11;
-        let garm_vy_leg1 = t12 * t24;
-        let t35 = t17 * garm_vy_leg1;
-        let t41 = t32 * t20 + t35 * twist[1] + s_armcross_leg1 * twist[0]
+        let t36 = t17 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t41;
-        let t43 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t36;
+        let t38 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t45 = rate_rod_leg1 * rate_rod_leg1;
-        let t46 = t43 + t45;
-        let t49 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t17 * t28 + 0.56 * c_rod_leg1 * t46;
-        let t50 = 0.56 * s_rod_leg1;
-        let t51 = t50 * minus_rate_cross_leg1;
-        let t52 = minus_rate_cross_leg1 * t51;
-        let t55 = acceleration[1] - (t52 - t50 * t46);
-        let rate_dot_arm_leg1 = t12 * (t49 + t24 * t55);
+        let t40 = rate_rod_leg1 * rate_rod_leg1;
+        let t46 = acceleration[1] + t25 * rate_rod_leg1;
+        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t17 * t28 + t30 * (t38 + t40) + t24 * t46;
+        let rate_dot_arm_leg1 = t12 * t48;
+        let garm_vy_leg1 = t12 * t24;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t12;
-        let t65 = 1.0 / s_cross_leg2;
-        let t66 = 4.166666666666667 * t65;
+        let t57 = 1.0 / s_cross_leg2;
+        let t58 = 4.166666666666667 * t57;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t75 = 0.5 * c_armcross_leg2;
-        let t78 = 1.0 / c_rod_leg2;
-        let t79 = s_rod_leg2 * t78;
-        let minus_garm_vx_leg2 = t66 * (t75 + 0.8660254037844387 * t79);
-        let t83 = 0.8660254037844387 * c_armcross_leg2;
-        let t89 = 0.24 * c_cross_leg2;
-        let t94 = t83 * twist[1] - t75 * twist[0] - s_armcross_leg2 * twist[2];
-        let t95 = 0.8660254037844387 * twist[0];
-        let t96 = 0.5 * twist[1];
-        let t97 = t95 + t96;
-        let rate_arm_leg2 = t66 * (t94 - t79 * t97);
-        let t101 = rate_arm_leg2 * rate_arm_leg2;
-        let t104 = 1.7857142857142858 * t78;
-        let minus_rate_rod_leg2 = t104 * t97;
-        let t106 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t107 = 0.5 * s_armcross_leg2;
-        let t109 = 0.8660254037844387 * s_armcross_leg2;
-        let t114 = c_cross_leg2 * t65;
-        let t118 = t89 * (t66 * t79);
-        let t120 = t107 * twist[0] - t109 * twist[1] - c_armcross_leg2 * twist[2]
-            - t114 * t94 + t118 * t97;
-        let rate_cross_leg2 = t104 * t120;
-        let t122 = rate_cross_leg2 * rate_cross_leg2;
-        let t123 = t106 + t122;
-        let t126 = t83 * acceleration[1] - t75 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t89 * t101 + 0.56 * c_rod_leg2 * t123;
-        let t127 = 0.8660254037844387 * acceleration[0];
-        let t128 = 0.5 * acceleration[1];
-        let t129 = t127 + t128;
-        let t130 = 0.56 * s_rod_leg2;
-        let t131 = t130 * rate_cross_leg2;
-        let t132 = rate_cross_leg2 * t131;
-        let t135 = t129 + t132 - t130 * t123;
-        let rate_dot_arm_leg2 = t66 * (t126 - t79 * t135);
-        let garm_vy_leg2 = t66 * (t83 - 0.5 * t79);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t66;
-        let t148 = 1.0 / s_cross_leg3;
-        let t149 = 4.166666666666667 * t148;
-        let t152 = 1.0 / c_rod_leg3;
-        let t153 = s_rod_leg3 * t152;
+        let t67 = 0.5 * c_armcross_leg2;
+        let t70 = 1.0 / c_rod_leg2;
+        let t71 = s_rod_leg2 * t70;
+        let minus_garm_vx_leg2 = t58 * (t67 + 0.8660254037844387 * t71);
+        let t75 = 0.8660254037844387 * c_armcross_leg2;
+        let t81 = 0.24 * c_cross_leg2;
+        let t87 = 0.8660254037844387 * twist[0];
+        let t88 = 0.5 * twist[1];
+        let t89 = t87 + t88;
+        let t90 = t71 * t89;
+        let rate_arm_leg2 = t58
+            * (t75 * twist[1] - t67 * twist[0] - s_armcross_leg2 * twist[2] - t90);
+        let t93 = rate_arm_leg2 * rate_arm_leg2;
+        let t96 = 1.7857142857142858 * t70;
+        let minus_rate_rod_leg2 = t96 * t89;
+        let t98 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t99 = 0.5 * s_armcross_leg2;
+        let t101 = 0.8660254037844387 * s_armcross_leg2;
+        let t107 = t99 * twist[0] - t101 * twist[1] - c_armcross_leg2 * twist[2]
+            - t81 * rate_arm_leg2;
+        let rate_cross_leg2 = t96 * t107;
+        let t109 = rate_cross_leg2 * rate_cross_leg2;
+        let t113 = t75 * acceleration[1] - t67 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t81 * t93
+            + 0.56 * c_rod_leg2 * (t98 + t109);
+        let t114 = 0.8660254037844387 * acceleration[0];
+        let t115 = 0.5 * acceleration[1];
+        let t116 = t114 + t115;
+        let t118 = t116 - t90 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t58 * (t113 - t71 * t118);
+        let garm_vy_leg2 = t58 * (t75 - 0.5 * t71);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t58;
+        let t131 = 1.0 / s_cross_leg3;
+        let t132 = 4.166666666666667 * t131;
+        let t135 = 1.0 / c_rod_leg3;
+        let t136 = s_rod_leg3 * t135;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t163 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t149 * (0.8660254037844387 * t153 - t163);
-        let t166 = 0.24 * c_cross_leg3;
-        let t167 = t95 - t96;
-        let t170 = 0.8660254037844387 * c_armcross_leg3;
-        let t174 = t163 * twist[0] + t170 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t149 * (t153 * t167 - t174);
-        let t177 = rate_arm_leg3 * rate_arm_leg3;
-        let t180 = 1.7857142857142858 * t152;
-        let rate_rod_leg3 = t180 * t167;
-        let t182 = rate_rod_leg3 * rate_rod_leg3;
-        let t183 = c_cross_leg3 * t148;
-        let t185 = 0.5 * s_armcross_leg3;
-        let t187 = 0.8660254037844387 * s_armcross_leg3;
-        let t194 = t166 * (t149 * t153);
-        let t196 = t183 * t174 + t185 * twist[0] + t187 * twist[1]
-            - c_armcross_leg3 * twist[2] - t194 * t167;
-        let rate_cross_leg3 = t180 * t196;
-        let t198 = rate_cross_leg3 * rate_cross_leg3;
-        let t199 = t182 + t198;
-        let t207 = t166 * t177 + 0.56 * c_rod_leg3 * t199
-            - (t163 * acceleration[0] + t170 * acceleration[1]
+        let t146 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t132 * (0.8660254037844387 * t136 - t146);
+        let t149 = 0.24 * c_cross_leg3;
+        let t150 = t87 - t88;
+        let t151 = t136 * t150;
+        let t153 = 0.8660254037844387 * c_armcross_leg3;
+        let rate_arm_leg3 = t132
+            * (t151 - (t146 * twist[0] + t153 * twist[1] + s_armcross_leg3 * twist[2]));
+        let t160 = rate_arm_leg3 * rate_arm_leg3;
+        let t163 = 1.7857142857142858 * t135;
+        let rate_rod_leg3 = t163 * t150;
+        let t165 = rate_rod_leg3 * rate_rod_leg3;
+        let t166 = 0.5 * s_armcross_leg3;
+        let t168 = 0.8660254037844387 * s_armcross_leg3;
+        let t174 = t166 * twist[0] + t168 * twist[1] - c_armcross_leg3 * twist[2]
+            - t149 * rate_arm_leg3;
+        let rate_cross_leg3 = t163 * t174;
+        let t176 = rate_cross_leg3 * rate_cross_leg3;
+        let t185 = t149 * t160 + 0.56 * c_rod_leg3 * (t165 + t176)
+            - (t146 * acceleration[0] + t153 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t208 = t127 - t128;
-        let t209 = 0.56 * s_rod_leg3;
-        let t210 = t209 * rate_cross_leg3;
-        let t211 = rate_cross_leg3 * t210;
-        let t214 = t208 - (t211 - t209 * t199);
-        let rate_dot_arm_leg3 = t149 * (t207 + t153 * t214);
-        let minus_garm_vy_leg3 = t149 * (t170 + 0.5 * t153);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t149;
-        let t225 = 9.81 * c_arm_leg1;
-        let t229 = 9.81 * c_arm_leg2;
-        let t233 = 9.81 * c_arm_leg3;
-        let t237 = 9.81 * s_arm_leg1;
-        let t241 = 9.81 * s_arm_leg2;
-        let t245 = 9.81 * s_arm_leg3;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t32 + s_armcross_leg1);
-        let t276 = 0.24 * s_cross_leg1;
-        let t279 = t50 * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t283 = t32 * t49 + t35 * t55 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t276 * t28 + t279 + t279;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t283;
-        let t285 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t287 = rate_rod_leg1 * (1.7857142857142858 * t41);
-        let t288 = t285 + t287;
-        let t291 = c_rod_leg1 * (1.7857142857142858 * t279);
-        let t292 = s_rod_leg1 * t288 + t291;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t35;
-        let t296 = 3.188775510204082 * t52;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t32);
-        let gcross_vx_leg2 = t104 * (t75 * t114 + t107 + 0.8660254037844387 * t118);
-        let t312 = 0.24 * s_cross_leg2;
-        let t315 = t130 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t320 = t107 * acceleration[0] - t109 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t312 * t101 + t315 + t315)
-            - t114 * t126;
-        let t322 = t320 + t118 * t135;
-        let rate_dot_cross_leg2 = t104 * t322;
-        let t324 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t326 = minus_rate_rod_leg2 * (1.7857142857142858 * t120);
-        let t327 = t324 - t326;
-        let t330 = c_rod_leg2 * (1.7857142857142858 * t315);
-        let t331 = s_rod_leg2 * t327 - t330;
-        let t333 = 2.76156059880242 * t132;
-        let gcross_vy_leg2 = t104 * (0.5 * t118 - (t83 * t114 + t109));
-        let t341 = 1.594387755102041 * t132;
-        let gcross_vz_leg2 = t104 * (s_armcross_leg2 * t114 - c_armcross_leg2);
-        let gcross_vx_leg3 = t180 * (t163 * t183 + t185 - 0.8660254037844387 * t194);
-        let t357 = 0.24 * s_cross_leg3;
-        let t360 = t209 * (rate_cross_leg3 * rate_rod_leg3);
-        let t365 = t185 * acceleration[0] + t187 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t357 * t177 - t360 - t360)
-            - t183 * t207;
-        let t367 = t365 - t194 * t214;
-        let rate_dot_cross_leg3 = t180 * t367;
-        let t369 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t371 = rate_rod_leg3 * (1.7857142857142858 * t196);
-        let t372 = t369 + t371;
-        let t375 = c_rod_leg3 * (1.7857142857142858 * t360);
-        let t376 = s_rod_leg3 * t372 + t375;
-        let t378 = 2.76156059880242 * t211;
-        let gcross_vy_leg3 = t180 * (t170 * t183 + t187 + 0.5 * t194);
-        let t386 = 1.594387755102041 * t211;
-        let gcross_vz_leg3 = t180 * (s_armcross_leg3 * t183 - c_armcross_leg3);
-        let t392 = t279 - t283;
-        let t396 = t287 + t288;
-        let t398 = s_rod_leg1 * (1.7857142857142858 * (t279 + t392)) - c_rod_leg1 * t396;
-        let t400 = t51 * t51;
-        let t408 = t322 + t315;
-        let t412 = t327 - t326;
-        let t414 = s_rod_leg2 * (1.7857142857142858 * (t315 + t408)) + c_rod_leg2 * t412;
-        let t416 = t131 * t131;
-        let t419 = t78 * (t416 - t120 * t120);
-        let t426 = t371 + t372;
-        let t428 = t367 - t360;
-        let t432 = c_rod_leg3 * t426 - s_rod_leg3 * (1.7857142857142858 * (t360 - t428));
-        let t434 = t210 * t210;
-        let t437 = t152 * (t434 - t196 * t196);
-        let t445 = 3.188775510204082 * (t41 * t51);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t55;
-        let t449 = 3.188775510204082 * t400;
-        let t452 = s_rod_leg1 * (t445 + rate_dot_rod_leg1) + c_rod_leg1 * (t45 - t449);
-        let t459 = 3.188775510204082 * (t120 * t131);
-        let minus_rate_dot_rod_leg2 = t104 * t135;
-        let t463 = 3.188775510204082 * t416;
-        let t466 = s_rod_leg2 * (t459 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t106 - t463);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t78;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t78;
-        let t477 = 3.188775510204082 * (t196 * t210);
-        let rate_dot_rod_leg3 = t180 * t214;
-        let t481 = 3.188775510204082 * t434;
-        let t484 = s_rod_leg3 * (t477 + rate_dot_rod_leg3) + c_rod_leg3 * (t182 - t481);
-        let grod_vx_leg3 = 1.5464739353293548 * t152;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t152;
-        let t496 = t291 + c_rod_leg1 * (1.7857142857142858 * t392);
-        let t503 = t330 + c_rod_leg2 * (1.7857142857142858 * t408);
-        let t511 = c_rod_leg3 * (1.7857142857142858 * t428) - t375;
-        let t517 = 1.7857142857142858 * acceleration[1];
-        let t523 = 1.7857142857142858 * t129;
-        let t531 = 1.7857142857142858 * t208;
-        let t544 = s_cross_leg1 * c_rod_leg1;
-        let t548 = t276 * s_rod_leg1;
-        let t553 = 0.24 * t544 * (t445 - rate_dot_rod_leg1) + t548 * (t449 + t45)
-            + t17 * t396;
-        let t556 = t237 + 0.24 * t28;
-        let t559 = 0.24 * rate_dot_arm_leg1 - t225;
-        let t562 = s_rod_leg1 * (s_cross_leg1 * t556 + c_cross_leg1 * t559);
-        let t570 = s_cross_leg1 * t559 - c_cross_leg1 * t556;
-        let t577 = 0.24 * rate_dot_arm_leg2 - t229;
-        let t580 = t241 + 0.24 * t101;
-        let t582 = s_cross_leg2 * t577 - c_cross_leg2 * t580;
-        let t585 = s_cross_leg2 * c_rod_leg2;
-        let t589 = t312 * s_rod_leg2;
-        let t594 = 0.24 * t585 * (t459 + minus_rate_dot_rod_leg2) + t589 * (t463 + t106)
-            - t89 * t412;
-        let t599 = s_rod_leg2 * (s_cross_leg2 * t580 + c_cross_leg2 * t577);
-        let t611 = s_cross_leg3 * c_rod_leg3;
-        let t615 = t357 * s_rod_leg3;
-        let t620 = 0.24 * t611 * (t477 - rate_dot_rod_leg3) + t615 * (t481 + t182)
-            - t166 * t426;
-        let t623 = t245 + 0.24 * t177;
-        let t626 = 0.24 * rate_dot_arm_leg3 - t233;
-        let t629 = s_rod_leg3 * (s_cross_leg3 * t623 + c_cross_leg3 * t626);
-        let t634 = s_cross_leg3 * t626 - c_cross_leg3 * t623;
-        let t651 = t17 * t43 - (0.42857142857142855 * (t544 * t283) + t285 * t548);
-        let t667 = 0.42857142857142855 * (t585 * t322) + t324 * t589 + t89 * t122;
-        let t681 = 0.42857142857142855 * (t611 * t367) + t369 * t615 + t166 * t198;
+        let t186 = t114 - t115;
+        let t188 = t186 + t151 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t132 * (t185 + t136 * t188);
+        let minus_garm_vy_leg3 = t132 * (t153 + 0.5 * t136);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t132;
+        let t199 = 9.81 * c_arm_leg1;
+        let t203 = 9.81 * c_arm_leg2;
+        let t207 = 9.81 * c_arm_leg3;
+        let t211 = 9.81 * s_arm_leg1;
+        let t215 = 9.81 * s_arm_leg2;
+        let t219 = 9.81 * s_arm_leg3;
+        let t241 = t11 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t241;
+        let t244 = rate_rod_leg1 * (1.7857142857142858 * t36);
+        let t245 = 0.24 * rate_dot_arm_leg1;
+        let t250 = 0.24 * s_cross_leg1;
+        let t252 = t25 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t245 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t250 * t28 + t252 + t252);
+        let t258 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t260 = t244 + t258 + t244;
+        let t261 = s_rod_leg1 * t260;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t17 * garm_vy_leg1);
+        let t266 = t24 * t36;
+        let t268 = 3.188775510204082 * (minus_rate_cross_leg1 * t266);
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t241;
+        let gcross_vx_leg2 = t96 * (t99 + minus_garm_vx_leg2 * t81);
+        let t280 = 0.24 * s_cross_leg2;
+        let t282 = t90 * rate_cross_leg2;
+        let t286 = 0.24 * rate_dot_arm_leg2;
+        let t288 = t99 * acceleration[0] - t101 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t280 * t93 + t282 + t282)
+            - c_cross_leg2 * t286;
+        let rate_dot_cross_leg2 = t96 * t288;
+        let t290 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t291 = 1.7857142857142858 * t107;
+        let t292 = minus_rate_rod_leg2 * t291;
+        let t294 = t290 - t292 - t292;
+        let t295 = s_rod_leg2 * t294;
+        let t297 = s_rod_leg2 * rate_cross_leg2;
+        let t298 = 0.56 * t297;
+        let t299 = rate_cross_leg2 * t298;
+        let t300 = 2.76156059880242 * t299;
+        let minus_gcross_vy_leg2 = t96 * (t101 + t81 * garm_vy_leg2);
+        let t306 = 1.594387755102041 * t299;
+        let gcross_vz_leg2 = t96 * (t57 * s_arm_leg2);
+        let gcross_vx_leg3 = t163 * (t166 - garm_vx_leg3 * t149);
+        let t314 = 1.7857142857142858 * t174;
+        let t315 = rate_rod_leg3 * t314;
+        let t321 = 0.24 * s_cross_leg3;
+        let t323 = t151 * rate_cross_leg3;
+        let t327 = 0.24 * rate_dot_arm_leg3;
+        let t329 = t166 * acceleration[0] + t168 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t321 * t160 - t323 - t323)
+            - c_cross_leg3 * t327;
+        let rate_dot_cross_leg3 = t163 * t329;
+        let t331 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t333 = t315 + t331 + t315;
+        let t334 = s_rod_leg3 * t333;
+        let t336 = s_rod_leg3 * rate_cross_leg3;
+        let t337 = 0.56 * t336;
+        let t338 = rate_cross_leg3 * t337;
+        let t339 = 2.76156059880242 * t338;
+        let gcross_vy_leg3 = t163 * (t168 + t149 * minus_garm_vy_leg3);
+        let t345 = 1.594387755102041 * t338;
+        let gcross_vz_leg3 = t163 * (t131 * s_arm_leg3);
+        let t350 = t261 - minus_rate_dot_cross_leg1;
+        let t353 = t24 * t350 - c_rod_leg1 * t260;
+        let t355 = t266 * t266;
+        let t363 = rate_dot_cross_leg2 - t295;
+        let t366 = t71 * t363 + c_rod_leg2 * t294;
+        let t368 = t298 * t298;
+        let t371 = t70 * (t368 - t107 * t107);
+        let t379 = rate_dot_cross_leg3 - t334;
+        let t381 = c_rod_leg3 * t333 + t136 * t379;
+        let t383 = t337 * t337;
+        let t386 = t135 * (t383 - t174 * t174);
+        let t393 = t30 * t268;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t46;
+        let t397 = 3.188775510204082 * t355;
+        let t400 = s_rod_leg1 * (t393 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t397);
+        let t406 = t291 * t297;
+        let minus_rate_dot_rod_leg2 = t96 * t118;
+        let t410 = 3.188775510204082 * t368;
+        let t413 = s_rod_leg2 * (t406 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t98 - t410);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t70;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t70;
+        let t423 = t314 * t336;
+        let rate_dot_rod_leg3 = t163 * t188;
+        let t427 = 3.188775510204082 * t383;
+        let t430 = s_rod_leg3 * (t423 + rate_dot_rod_leg3) + c_rod_leg3 * (t165 - t427);
+        let grod_vx_leg3 = 1.5464739353293548 * t135;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t135;
+        let t454 = 1.7857142857142858 * acceleration[1];
+        let t460 = 1.7857142857142858 * t116;
+        let t468 = 1.7857142857142858 * t186;
+        let t489 = t250 * (c_rod_leg1 * (t393 - rate_dot_rod_leg1))
+            + t250 * s_rod_leg1 * (t397 + t40) + t17 * t260;
+        let t492 = t211 + 0.24 * t28;
+        let t494 = t245 - t199;
+        let t497 = s_rod_leg1 * (s_cross_leg1 * t492 + c_cross_leg1 * t494);
+        let t505 = s_cross_leg1 * t494 - c_cross_leg1 * t492;
+        let t511 = t286 - t203;
+        let t514 = t215 + 0.24 * t93;
+        let t516 = s_cross_leg2 * t511 - c_cross_leg2 * t514;
+        let t526 = t280 * (c_rod_leg2 * (t406 + minus_rate_dot_rod_leg2))
+            + t280 * s_rod_leg2 * (t410 + t98) - t81 * t294;
+        let t531 = s_rod_leg2 * (s_cross_leg2 * t514 + c_cross_leg2 * t511);
+        let t551 = t321 * (c_rod_leg3 * (t423 - rate_dot_rod_leg3))
+            + t321 * s_rod_leg3 * (t427 + t165) - t149 * t333;
+        let t554 = t219 + 0.24 * t160;
+        let t556 = t327 - t207;
+        let t559 = s_rod_leg3 * (s_cross_leg3 * t554 + c_cross_leg3 * t556);
+        let t564 = s_cross_leg3 * t556 - c_cross_leg3 * t554;
+        let t577 = t17 * t38 - t250 * minus_rate_dot_cross_leg1;
+        let t590 = t280 * rate_dot_cross_leg2 + t81 * t109;
+        let t601 = t321 * rate_dot_cross_leg3 + t149 * t176;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2), garm_vx_leg3 * rate_dot_arm_leg3,
-                -(garm_vx_leg1 * t225), minus_garm_vx_leg2 * t229, -(garm_vx_leg3 * t233),
-                garm_vx_leg1 * t237, -(minus_garm_vx_leg2 * t241), garm_vx_leg3 * t245,
+                -(garm_vx_leg1 * t199), minus_garm_vx_leg2 * t203, -(garm_vx_leg3 * t207),
+                garm_vx_leg1 * t211, -(minus_garm_vx_leg2 * t215), garm_vx_leg3 * t219,
                 garm_vx_leg1 * rate_arm_leg1, -(minus_garm_vx_leg2 * rate_arm_leg2),
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1,
-                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t292,
-                gcross_vx_leg2 * t331 + t333, gcross_vx_leg3 * t376 - t378,
-                -(minus_gcross_vx_leg1 * t398), gcross_vx_leg2 * t414 - 4.9313582121471775 * t419,
-                gcross_vx_leg3 * t432 + 4.9313582121471775 * t437, -(minus_gcross_vx_leg1 * t452),
-                gcross_vx_leg2 * t466 - minus_grod_vx_leg2 * t324,
-                gcross_vx_leg3 * t484 + grod_vx_leg3 * t369, -(minus_gcross_vx_leg1 * t496),
-                gcross_vx_leg2 * t503 - t333, gcross_vx_leg3 * t511 + t378,
-                -(minus_gcross_vx_leg1 * t517),
-                -(gcross_vx_leg2 * t523 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t531 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t261,
+                gcross_vx_leg2 * t295 + t300, gcross_vx_leg3 * t334 - t339,
+                -(minus_gcross_vx_leg1 * t353), gcross_vx_leg2 * t366 - 4.9313582121471775 * t371,
+                gcross_vx_leg3 * t381 + 4.9313582121471775 * t386, -(minus_gcross_vx_leg1 * t400),
+                gcross_vx_leg2 * t413 - minus_grod_vx_leg2 * t290,
+                gcross_vx_leg3 * t430 + grod_vx_leg3 * t331, -(minus_gcross_vx_leg1 * t350),
+                gcross_vx_leg2 * t363 - t300, gcross_vx_leg3 * t379 + t339,
+                -(minus_gcross_vx_leg1 * t454),
+                -(gcross_vx_leg2 * t460 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t468 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t553 + minus_gcross_vx_leg1 * t562,
-                minus_grod_vx_leg2 * (c_rod_leg2 * t582)
-                    - (minus_garm_vx_leg2 * t594 + gcross_vx_leg2 * t599),
-                garm_vx_leg3 * t620 - gcross_vx_leg3 * t629
-                    - grod_vx_leg3 * (c_rod_leg3 * t634),
-                garm_vx_leg1 * t651 - minus_gcross_vx_leg1 * t570,
-                gcross_vx_leg2 * t582 - minus_garm_vx_leg2 * t667,
-                garm_vx_leg3 * t681 + gcross_vx_leg3 * t634,
+                garm_vx_leg1 * t489 + minus_gcross_vx_leg1 * t497,
+                1.5464739353293548 * t516
+                    - (minus_garm_vx_leg2 * t526 + gcross_vx_leg2 * t531),
+                garm_vx_leg3 * t551 - gcross_vx_leg3 * t559 - 1.5464739353293548 * t564,
+                garm_vx_leg1 * t577 - minus_gcross_vx_leg1 * t505,
+                gcross_vx_leg2 * t516 - minus_garm_vx_leg2 * t590,
+                garm_vx_leg3 * t601 + gcross_vx_leg3 * t564,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t225),
-                -(garm_vy_leg2 * t229), minus_garm_vy_leg3 * t233, garm_vy_leg1 * t237,
-                garm_vy_leg2 * t241, -(minus_garm_vy_leg3 * t245), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t199),
+                -(garm_vy_leg2 * t203), minus_garm_vy_leg3 * t207, garm_vy_leg1 * t211,
+                garm_vy_leg2 * t215, -(minus_garm_vy_leg3 * t219), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, -(minus_garm_vy_leg3 * rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3), garm_vy_leg1,
-                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t292 - t296,
-                gcross_vy_leg2 * t331 + t341, gcross_vy_leg3 * t376 + t386,
-                5.694241982507289 * (t23 * (t400 - t41 * t41))
-                    - minus_gcross_vy_leg1 * t398,
-                gcross_vy_leg2 * t414 - 2.8471209912536444 * t419,
-                gcross_vy_leg3 * t432 - 2.8471209912536444 * t437,
-                -(minus_gcross_vy_leg1 * t452 + grod_vy_leg1 * t285),
-                gcross_vy_leg2 * t466 - minus_grod_vy_leg2 * t324,
-                gcross_vy_leg3 * t484 - minus_grod_vy_leg3 * t369,
-                t296 - minus_gcross_vy_leg1 * t496,
-                gcross_vy_leg2 * t503 - t341,
-                gcross_vy_leg3 * t511 - t386,
-                -(minus_gcross_vy_leg1 * t517
+                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t261 - t268,
+                t306 - minus_gcross_vy_leg2 * t295, gcross_vy_leg3 * t334 + t345,
+                5.694241982507289 * (t23 * (t355 - t36 * t36))
+                    - minus_gcross_vy_leg1 * t353,
+                -(minus_gcross_vy_leg2 * t366 + 2.8471209912536444 * t371),
+                gcross_vy_leg3 * t381 - 2.8471209912536444 * t386,
+                -(minus_gcross_vy_leg1 * t400 + grod_vy_leg1 * t258),
+                -(minus_gcross_vy_leg2 * t413 + minus_grod_vy_leg2 * t290),
+                gcross_vy_leg3 * t430 - minus_grod_vy_leg3 * t331,
+                t268 - minus_gcross_vy_leg1 * t350,
+                -(minus_gcross_vy_leg2 * t363 + t306),
+                gcross_vy_leg3 * t379 - t345,
+                -(minus_gcross_vy_leg1 * t454
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                -(gcross_vy_leg2 * t523 + 0.8928571428571429 * rate_dot_cross_leg2),
-                gcross_vy_leg3 * t531 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -(0.8928571428571429 * rate_dot_cross_leg2
+                    - minus_gcross_vy_leg2 * t460),
+                gcross_vy_leg3 * t468 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t553 + minus_gcross_vy_leg1 * t562
-                    - 1.7857142857142858 * t570,
-                garm_vy_leg2 * t594 - gcross_vy_leg2 * t599 + 0.8928571428571429 * t582,
-                0.8928571428571429 * t634
-                    - (minus_garm_vy_leg3 * t620 + gcross_vy_leg3 * t629),
-                garm_vy_leg1 * t651 - minus_gcross_vy_leg1 * t570,
-                garm_vy_leg2 * t667 + gcross_vy_leg2 * t582,
-                gcross_vy_leg3 * t634 - minus_garm_vy_leg3 * t681,
+                garm_vy_leg1 * t489 + minus_gcross_vy_leg1 * t497
+                    - 1.7857142857142858 * t505,
+                garm_vy_leg2 * t526 + minus_gcross_vy_leg2 * t531
+                    + 0.8928571428571429 * t516,
+                0.8928571428571429 * t564
+                    - (minus_garm_vy_leg3 * t551 + gcross_vy_leg3 * t559),
+                garm_vy_leg1 * t577 - minus_gcross_vy_leg1 * t505,
+                garm_vy_leg2 * t590 - minus_gcross_vy_leg2 * t516,
+                gcross_vy_leg3 * t564 - minus_garm_vy_leg3 * t601,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t225,
-                minus_garm_vz_leg2 * t229, minus_garm_vz_leg3 * t233, -(minus_garm_vz_leg1 * t237),
-                -(minus_garm_vz_leg2 * t241), -(minus_garm_vz_leg3 * t245),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t199,
+                minus_garm_vz_leg2 * t203, minus_garm_vz_leg3 * t207, -(minus_garm_vz_leg1 * t211),
+                -(minus_garm_vz_leg2 * t215), -(minus_garm_vz_leg3 * t219),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t292,
-                gcross_vz_leg2 * t331, gcross_vz_leg3 * t376, -(minus_gcross_vz_leg1 * t398),
-                gcross_vz_leg2 * t414, gcross_vz_leg3 * t432, -(minus_gcross_vz_leg1 * t452),
-                gcross_vz_leg2 * t466, gcross_vz_leg3 * t484, -(minus_gcross_vz_leg1 * t496),
-                gcross_vz_leg2 * t503, gcross_vz_leg3 * t511, -(minus_gcross_vz_leg1 * t517),
-                -(gcross_vz_leg2 * t523), gcross_vz_leg3 * t531, 0.0, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t562 - minus_garm_vz_leg1 * t553,
-                -(minus_garm_vz_leg2 * t594 + gcross_vz_leg2 * t599),
-                -(minus_garm_vz_leg3 * t620 + gcross_vz_leg3 * t629),
-                -(minus_garm_vz_leg1 * t651 + minus_gcross_vz_leg1 * t570),
-                gcross_vz_leg2 * t582 - minus_garm_vz_leg2 * t667,
-                gcross_vz_leg3 * t634 - minus_garm_vz_leg3 * t681,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -(minus_minus_gcross_vz_leg1 * t261),
+                gcross_vz_leg2 * t295, gcross_vz_leg3 * t334, minus_minus_gcross_vz_leg1 * t353,
+                gcross_vz_leg2 * t366, gcross_vz_leg3 * t381, minus_minus_gcross_vz_leg1 * t400,
+                gcross_vz_leg2 * t413, gcross_vz_leg3 * t430, minus_minus_gcross_vz_leg1 * t350,
+                gcross_vz_leg2 * t363, gcross_vz_leg3 * t379, minus_minus_gcross_vz_leg1 * t454,
+                -(gcross_vz_leg2 * t460), gcross_vz_leg3 * t468, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t497 + minus_garm_vz_leg1 * t489),
+                -(minus_garm_vz_leg2 * t526 + gcross_vz_leg2 * t531),
+                -(minus_garm_vz_leg3 * t551 + gcross_vz_leg3 * t559),
+                -(minus_garm_vz_leg1 * t577 - minus_minus_gcross_vz_leg1 * t505),
+                gcross_vz_leg2 * t516 - minus_garm_vz_leg2 * t590,
+                gcross_vz_leg3 * t564 - minus_garm_vz_leg3 * t601,
             ],
         ])
     }
@@ -5488,7 +5282,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 866 operations (288 additions, 560 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 756 intermediates.
+    /// 742 operations (237 additions, 487 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 633 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5499,441 +5293,413 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
-        let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t9 = pose[1] * pose[1] + -0.3136;
+        let t10 = t4 + t9;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t9));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t45 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t48 = pose[0] - 0.025 + 0.1;
-        let t49 = 0.5 * t48;
-        let t50 = 0.8660254037844387 * t45 - t49;
-        let t53 = 0.2304 * (t50 * t50 + t3);
-        let t54 = t48 * t48;
-        let t57 = t54 + t45 * t45 + t3;
-        let t59 = t57 - 0.3136 + 0.0576;
-        let t61 = t53 - t59 * t59;
-        ::overact::guard::reach(t61, "leg2")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.8660254037844387 * t48;
-        let t66 = t64 + 0.5 * t45;
-        let t67 = t66 * t66;
-        let t69 = 1.0 - 3.188775510204082 * t67;
-        ::overact::guard::reach(t69, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t69);
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t38 = t0 + 0.025;
+        let t39 = t38 * t38;
+        let t41 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t45 = t39 + t41 * t41 + t3 + -0.3136;
+        let t48 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t50 = 0.8660254037844387 * t38 - 0.5 * t48;
+        let t51 = pose[1] + t50;
+        let t53 = 0.3136 - t51 * t51;
+        let t55 = 0.2304 * (t45 + t53);
+        let t56 = t45 + 0.0576;
+        let t58 = t55 - t56 * t56;
+        ::overact::guard::reach(t58, "leg2")?;
+        let t59 = ::overact::math::sqrt(t58);
+        let t60 = 3.188775510204082 * t53;
+        ::overact::guard::reach(t60, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t60);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t71 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t62 / t71;
+        let t62 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t59 / t62;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t73 = 1.0 / s_cross_leg2;
-        let t74 = 4.166666666666667 * t73;
-        let t75 = 1.0 / c_rod_leg2;
-        let t76 = 1.7857142857142858 * t75;
-        let t77 = t66 * t76;
-        let t79 = 1.0 / t53;
-        let t80 = 0.48 * t50;
-        let c_arm_leg2 = t79 * (t80 * t59 - t14 * t62);
-        let c_cross_leg2 = (t57 - (0.0576 + t67) - 0.3136 * t69) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t79 * (t14 * t59 + t80 * t62);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t98 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t74 * (0.8660254037844387 * t77 - t98);
-        let t104 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t106 = t49 + 0.8660254037844387 * t104;
-        let t109 = 0.2304 * (t106 * t106 + t3);
-        let t112 = t54 + t104 * t104 + t3;
-        let t114 = t112 - 0.3136 + 0.0576;
-        let t116 = t109 - t114 * t114;
-        ::overact::guard::reach(t116, "leg3")?;
-        let t117 = ::overact::math::sqrt(t116);
-        let t120 = t64 - 0.5 * t104;
-        let t121 = t120 * t120;
-        let t123 = 1.0 - 3.188775510204082 * t121;
-        ::overact::guard::reach(t123, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t123);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t125 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t117 / t125;
-        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t127 = 1.0 / s_cross_leg3;
-        let t128 = 4.166666666666667 * t127;
-        let t129 = 1.0 / t109;
-        let t130 = 0.48 * t106;
-        let minus_c_arm_leg3 = t129 * (t130 * t114 + t14 * t117);
-        let c_cross_leg3 = (t112 - (0.0576 + t121) - 0.3136 * t123)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t129 * (t130 * t117 - t14 * t114);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t148 = 0.5 * minus_c_armcross_leg3;
-        let t149 = 1.0 / c_rod_leg3;
-        let t150 = 1.7857142857142858 * t149;
-        let t151 = t120 * t150;
-        let garm_vx_leg3 = t128 * (t148 + 0.8660254037844387 * t151);
-        let t156 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
-        let t157 = 1.0 / t156;
-        let t158 = 0.24 * c_cross_leg1;
-        let t159 = actuator_velocities[0] * actuator_velocities[0];
-        let t161 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t161;
-        let t163 = c_cross_leg1 * t40;
-        let t164 = garm_vx_leg1 * actuator_velocities[0];
-        let t165 = garm_vx_leg2 * actuator_velocities[1];
-        let t167 = garm_vx_leg3 * actuator_velocities[2];
-        let t168 = t164 + t165 + t167;
-        let t170 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t41 * t170;
-        let t173 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t74 * (t173 + 0.5 * t77);
-        let t179 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t128 * (t179 - 0.5 * t151);
-        let t184 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t185 = t184 * t157;
-        let t192 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t184 * t185;
-        ::overact::guard::platform(t192, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t192, 14.869730172882846, "actuators")?;
-        let t193 = 1.0 / t192;
-        let t194 = garm_vy_leg1 * actuator_velocities[0];
-        let t195 = garm_vy_leg2 * actuator_velocities[1];
-        let t197 = garm_vy_leg3 * actuator_velocities[2];
-        let t200 = t194 + t195 + t197 - t168 * t185;
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let t64 = 1.0 / s_cross_leg2;
+        let t65 = 4.166666666666667 * t64;
+        let t66 = 1.0 / c_rod_leg2;
+        let t67 = 1.7857142857142858 * t66;
+        let t68 = t51 * t67;
+        let t70 = 1.0 / t55;
+        let t73 = 0.5 * t38;
+        let t75 = 0.48 * (0.8660254037844387 * t41 - t73);
+        let minus_s_arm_leg2 = t70 * (t13 * t56 + t75 * t59);
+        let t79 = t64 * minus_s_arm_leg2;
+        let c_arm_leg2 = t70 * (t75 * t56 - t13 * t59);
+        let c_cross_leg2 = (-0.0576 + t45) / t62;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let t89 = c_cross_leg2 * t64;
+        let c_armcross_leg2 = t79 + s_armcross_leg2 * t89;
+        let t93 = 0.8660254037844387 * t68 - 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t65 * t93;
+        let t100 = t39 + t48 * t48 + t3 + -0.3136;
+        let t102 = 0.3136 - t50 * t50;
+        let t104 = 0.2304 * (t100 + t102);
+        let t105 = t100 + 0.0576;
+        let t107 = t104 - t105 * t105;
+        ::overact::guard::reach(t107, "leg3")?;
+        let t108 = ::overact::math::sqrt(t107);
+        let t109 = 3.188775510204082 * t102;
+        ::overact::guard::reach(t109, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t109);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t111 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t108 / t111;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t113 = 1.0 / s_cross_leg3;
+        let t114 = 4.166666666666667 * t113;
+        let t115 = 1.0 / t104;
+        let t118 = 0.48 * (t73 + 0.8660254037844387 * t48);
+        let s_arm_leg3 = t115 * (t118 * t108 - t13 * t105);
+        let t123 = t113 * s_arm_leg3;
+        let c_cross_leg3 = (-0.0576 + t100) / t111;
+        let minus_c_arm_leg3 = t115 * (t118 * t105 + t13 * t108);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t128;
-        let t218 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t133 = c_cross_leg3 * t113;
+        let minus_c_armcross_leg3 = t123 - s_armcross_leg3 * t133;
+        let t137 = 1.0 / c_rod_leg3;
+        let t138 = 1.7857142857142858 * t137;
+        let t139 = t50 * t138;
+        let t141 = 0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t139;
+        let garm_vx_leg3 = t114 * t141;
+        let t144 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t144, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t144, 14.869730172882841, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = 0.24 * c_cross_leg1;
+        let t147 = actuator_velocities[0] * actuator_velocities[0];
+        let t149 = 0.56 * c_rod_leg1;
+        let t150 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t150;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t156 = garm_vx_leg1 * actuator_velocities[0];
+        let t157 = garm_vx_leg2 * actuator_velocities[1];
+        let t159 = garm_vx_leg3 * actuator_velocities[2];
+        let t160 = t156 + t157 + t159;
+        let t162 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t35 * t162;
+        let t167 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t68;
+        let garm_vy_leg2 = t65 * t167;
+        let t173 = 0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t139;
+        let garm_vy_leg3 = t114 * t173;
+        let t176 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t177 = t176 * t145;
+        let t184 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t176 * t177;
+        ::overact::guard::platform(t184, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t184, 14.869730172882846, "actuators")?;
+        let t185 = 1.0 / t184;
+        let t186 = garm_vy_leg1 * actuator_velocities[0];
+        let t187 = garm_vy_leg2 * actuator_velocities[1];
+        let t189 = garm_vy_leg3 * actuator_velocities[2];
+        let t192 = t186 + t187 + t189 - t160 * t177;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t65;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t114;
+        let t201 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t219 = t218 * t157;
-        let t226 = t184 * t219
+        let t202 = t201 * t145;
+        let t209 = t176 * t202
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t227 = t226 * t193;
-        let t236 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t210 = t209 * t185;
+        let t219 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t218 * t219 - t226 * t227;
-        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
-        let t237 = 1.0 / t236;
-        let t239 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t240 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t242 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t247 = t237 * (t168 * t219 - (t239 + t240 + t242) - t227 * t200);
-        let t249 = t193 * t200 - t227 * t247;
-        let t253 = t168 * t157 - t185 * t249 + t219 * t247;
-        let t258 = t158 * garm_vy_leg1;
-        let t264 = t163 * (c_armcross_leg1 * t253 - s_armcross_leg1 * t247) + t258 * t249
-            + s_armcross_leg1 * t253 + c_armcross_leg1 * t247;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t264;
-        let t266 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t249;
-        let t268 = rate_rod_leg1 * rate_rod_leg1;
-        let t269 = t266 + t268;
-        let t271 = t158 * t159 + t36 * t269;
-        let t272 = pose[1] * minus_rate_cross_leg1;
-        let t273 = minus_rate_cross_leg1 * t272;
-        let t275 = t273 - pose[1] * t269;
-        let rate_dot_arm_leg1 = t41 * (t271 - t170 * t275);
-        let t279 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t281 = 0.24 * c_cross_leg2;
-        let t282 = actuator_velocities[1] * actuator_velocities[1];
-        let t284 = 0.8660254037844387 * t253;
-        let t285 = 0.5 * t249;
-        let t286 = t284 + t285;
-        let minus_rate_rod_leg2 = t76 * t286;
-        let t288 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t289 = 0.5 * s_armcross_leg2;
-        let t291 = 0.8660254037844387 * s_armcross_leg2;
-        let t296 = c_cross_leg2 * t73;
-        let t303 = t289 * t253 - t291 * t249 - c_armcross_leg2 * t247
-            - t296 * (t173 * t249 - t98 * t253 - s_armcross_leg2 * t247);
-        let t305 = t281 * (t74 * t77);
-        let t307 = t303 - t305 * t286;
-        let rate_cross_leg2 = t76 * t307;
-        let t309 = rate_cross_leg2 * rate_cross_leg2;
-        let t310 = t288 + t309;
-        let t312 = t281 * t282 + t71 * t310;
-        let t314 = t66 * rate_cross_leg2;
-        let t315 = rate_cross_leg2 * t314;
-        let t316 = t66 * t310 - t315;
-        let rate_dot_arm_leg2 = t74 * (t312 + t77 * t316);
-        let t320 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t323 = 0.24 * c_cross_leg3;
-        let t324 = actuator_velocities[2] * actuator_velocities[2];
-        let t326 = t284 - t285;
-        let rate_rod_leg3 = t150 * t326;
-        let t328 = rate_rod_leg3 * rate_rod_leg3;
-        let t329 = 0.5 * s_armcross_leg3;
-        let t331 = 0.8660254037844387 * s_armcross_leg3;
-        let t336 = c_cross_leg3 * t127;
-        let t343 = t329 * t253 + t331 * t249 + minus_c_armcross_leg3 * t247
-            - t336 * (t148 * t253 + t179 * t249 - s_armcross_leg3 * t247);
-        let t345 = t323 * (t128 * t151);
-        let t347 = t343 - t345 * t326;
-        let rate_cross_leg3 = t150 * t347;
-        let t349 = rate_cross_leg3 * rate_cross_leg3;
-        let t350 = t328 + t349;
-        let t352 = t323 * t324 + t125 * t350;
-        let t353 = t120 * rate_cross_leg3;
-        let t354 = rate_cross_leg3 * t353;
-        let t356 = t354 - t120 * t350;
-        let rate_dot_arm_leg3 = t128 * (t352 - t151 * t356);
-        let t360 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t362 = garm_vx_leg1 * t279 + garm_vx_leg2 * t320 + garm_vx_leg3 * t360;
-        let t370 = garm_vy_leg1 * t279 + garm_vy_leg2 * t320 + garm_vy_leg3 * t360
-            - t185 * t362;
-        let t381 = t237
-            * (t219 * t362
-                - (minus_garm_vz_leg1 * t279 + minus_garm_vz_leg2 * t320
-                    + minus_garm_vz_leg3 * t360) - t227 * t370);
-        let t383 = t193 * t370 - t227 * t381;
-        let t387 = t157 * t362 - t185 * t383 + t219 * t381;
-        let t398 = 9.81 * c_arm_leg1;
-        let t402 = 9.81 * c_arm_leg2;
-        let t406 = 9.81 * minus_c_arm_leg3;
-        let t410 = 9.81 * minus_s_arm_leg1;
-        let t414 = 9.81 * minus_s_arm_leg2;
-        let t418 = 9.81 * s_arm_leg3;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t163 + s_armcross_leg1);
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t201 * t202 - t209 * t210;
+        ::overact::guard::platform(t219, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t219, 34.855350201355726, "actuators")?;
+        let t220 = 1.0 / t219;
+        let t222 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t223 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t225 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t230 = t220 * (t160 * t202 - (t222 + t223 + t225) - t210 * t192);
+        let t232 = t185 * t192 - t210 * t230;
+        let t236 = t160 * t145 - t177 * t232 + t202 * t230;
+        let t240 = t146 * actuator_velocities[0] + s_armcross_leg1 * t236
+            + c_armcross_leg1 * t230;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t240;
+        let t242 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t232;
+        let t244 = rate_rod_leg1 * rate_rod_leg1;
+        let t248 = pose[1] * t244;
+        let rate_dot_arm_leg1 = t35 * (t146 * t147 + t149 * (t242 + t244) + t162 * t248);
+        let t252 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t254 = 0.24 * c_cross_leg2;
+        let t255 = actuator_velocities[1] * actuator_velocities[1];
+        let t258 = 0.8660254037844387 * t236;
+        let t259 = 0.5 * t232;
+        let minus_rate_rod_leg2 = t67 * (t258 + t259);
+        let t262 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t263 = 0.5 * s_armcross_leg2;
+        let t265 = 0.8660254037844387 * s_armcross_leg2;
+        let t271 = t263 * t236 - t265 * t232 - c_armcross_leg2 * t230
+            - actuator_velocities[1] * t254;
+        let rate_cross_leg2 = t67 * t271;
+        let t273 = rate_cross_leg2 * rate_cross_leg2;
+        let t277 = t51 * t262;
+        let rate_dot_arm_leg2 = t65
+            * (t254 * t255 + 0.56 * c_rod_leg2 * (t262 + t273) + t68 * t277);
+        let t281 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t284 = 0.24 * c_cross_leg3;
+        let t285 = actuator_velocities[2] * actuator_velocities[2];
+        let rate_rod_leg3 = t138 * (t258 - t259);
+        let t290 = rate_rod_leg3 * rate_rod_leg3;
+        let t291 = 0.5 * s_armcross_leg3;
+        let t293 = 0.8660254037844387 * s_armcross_leg3;
+        let t299 = t291 * t236 + t293 * t232 + minus_c_armcross_leg3 * t230
+            - actuator_velocities[2] * t284;
+        let rate_cross_leg3 = t138 * t299;
+        let t301 = rate_cross_leg3 * rate_cross_leg3;
+        let t305 = t50 * t290;
+        let rate_dot_arm_leg3 = t114
+            * (t284 * t285 + 0.56 * c_rod_leg3 * (t290 + t301) + t139 * t305);
+        let t309 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t311 = garm_vx_leg1 * t252 + garm_vx_leg2 * t281 + garm_vx_leg3 * t309;
+        let t319 = garm_vy_leg1 * t252 + garm_vy_leg2 * t281 + garm_vy_leg3 * t309
+            - t177 * t311;
+        let t330 = t220
+            * (t202 * t311
+                - (minus_garm_vz_leg1 * t252 + minus_garm_vz_leg2 * t281
+                    + minus_garm_vz_leg3 * t309) - t210 * t319);
+        let t332 = t185 * t319 - t210 * t330;
+        let t336 = t145 * t311 - t177 * t332 + t202 * t330;
+        let t347 = 9.81 * c_arm_leg1;
+        let t351 = 9.81 * c_arm_leg2;
+        let t355 = 9.81 * minus_c_arm_leg3;
+        let t359 = 9.81 * minus_s_arm_leg1;
+        let t363 = 9.81 * minus_s_arm_leg2;
+        let t367 = 9.81 * s_arm_leg3;
+        let t380 = t34 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t380;
+        let t383 = rate_rod_leg1 * (1.7857142857142858 * t240);
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t440 = t383 - t275;
-        let t449 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t453 = t163 * (c_armcross_leg1 * t387 - s_armcross_leg1 * t381 + t271)
-            + t258 * t440 + s_armcross_leg1 * t387 + c_armcross_leg1 * t381
-            + 0.24 * s_cross_leg1 * t159 + t449 + t449;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t453;
-        let t455 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t457 = rate_rod_leg1 * (1.7857142857142858 * t264);
-        let t458 = t455 + t457;
-        let t461 = c_rod_leg1 * (1.7857142857142858 * t449);
-        let t462 = s_rod_leg1 * t458 + t461;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t258;
-        let t466 = 3.188775510204082 * t273;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t163);
-        let gcross_vx_leg2 = t76 * (t98 * t296 + t289 - 0.8660254037844387 * t305);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t66;
-        let t486 = t66 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t489 = t289 * t387 - t291 * t383 - c_armcross_leg2 * t381
-            - (0.24 * s_cross_leg2 * t282 - t486 - t486);
-        let t498 = 0.8660254037844387 * t387;
-        let t499 = 0.5 * t383;
-        let t500 = t498 + t499;
-        let t501 = t500 + t316;
-        let t503 = t489
-            - t296 * (t173 * t383 - t98 * t387 - s_armcross_leg2 * t381 + t312)
-            - t305 * t501;
-        let rate_dot_cross_leg2 = t76 * t503;
-        let t505 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t507 = minus_rate_rod_leg2 * (1.7857142857142858 * t307);
-        let t508 = t505 + t507;
-        let t511 = c_rod_leg2 * (1.7857142857142858 * t486);
-        let t512 = minus_s_rod_leg2 * t508 + t511;
-        let t514 = 2.76156059880242 * t315;
-        let minus_gcross_vy_leg2 = t76 * (t173 * t296 + t291 + 0.5 * t305);
-        let t522 = 1.594387755102041 * t315;
-        let gcross_vz_leg2 = t76 * (s_armcross_leg2 * t296 - c_armcross_leg2);
-        let gcross_vx_leg3 = t150 * (t329 - t148 * t336 - 0.8660254037844387 * t345);
-        let s_rod_leg3 = 1.7857142857142858 * t120;
-        let t542 = t120 * (rate_cross_leg3 * rate_rod_leg3);
-        let t545 = t329 * t387 + t331 * t383 + minus_c_armcross_leg3 * t381
-            - (0.24 * s_cross_leg3 * t324 - t542 - t542);
-        let t554 = t498 - t499;
-        let t555 = t554 - t356;
-        let t557 = t545
-            - t336 * (t148 * t387 + t179 * t383 - s_armcross_leg3 * t381 + t352)
-            - t345 * t555;
-        let rate_dot_cross_leg3 = t150 * t557;
-        let t559 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t561 = rate_rod_leg3 * (1.7857142857142858 * t347);
-        let t562 = t559 + t561;
-        let t565 = c_rod_leg3 * (1.7857142857142858 * t542);
-        let t566 = s_rod_leg3 * t562 + t565;
-        let t568 = 2.76156059880242 * t354;
-        let gcross_vy_leg3 = t150 * (t331 - t179 * t336 + 0.5 * t345);
-        let t576 = 1.594387755102041 * t354;
-        let gcross_vz_leg3 = t150 * (s_armcross_leg3 * t336 + minus_c_armcross_leg3);
-        let t582 = t449 - t453;
-        let t586 = t457 + t458;
-        let t588 = 3.188775510204082 * (pose[1] * (t449 + t582)) - c_rod_leg1 * t586;
-        let t590 = t272 * t272;
-        let t598 = t503 - t486;
-        let t602 = t507 + t508;
-        let t604 = 3.188775510204082 * (t66 * (t486 - t598)) - c_rod_leg2 * t602;
-        let t606 = t314 * t314;
-        let t609 = t75 * (t606 - t307 * t307);
-        let t616 = t561 + t562;
-        let t618 = t557 - t542;
-        let t622 = c_rod_leg3 * t616 - 3.188775510204082 * (t120 * (t542 - t618));
-        let t624 = t353 * t353;
-        let t627 = t149 * (t624 - t347 * t347);
-        let t635 = 3.188775510204082 * (t264 * t272);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t440;
-        let t639 = 3.188775510204082 * t590;
-        let t642 = s_rod_leg1 * (t635 + rate_dot_rod_leg1) + c_rod_leg1 * (t268 - t639);
-        let t649 = 3.188775510204082 * (t307 * t314);
-        let minus_rate_dot_rod_leg2 = t76 * t501;
-        let t653 = 3.188775510204082 * t606;
-        let t656 = minus_s_rod_leg2 * (t649 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t288 - t653);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t75;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t75;
-        let t667 = 3.188775510204082 * (t347 * t353);
-        let rate_dot_rod_leg3 = t150 * t555;
-        let t671 = 3.188775510204082 * t624;
-        let t674 = s_rod_leg3 * (t667 + rate_dot_rod_leg3) + c_rod_leg3 * (t328 - t671);
-        let grod_vx_leg3 = 1.5464739353293548 * t149;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t149;
-        let t686 = t461 + c_rod_leg1 * (1.7857142857142858 * t582);
-        let t693 = c_rod_leg2 * (1.7857142857142858 * t598) - t511;
-        let t701 = c_rod_leg3 * (1.7857142857142858 * t618) - t565;
-        let t707 = 1.7857142857142858 * t383;
-        let t713 = 1.7857142857142858 * t500;
-        let t721 = 1.7857142857142858 * t554;
-        let t738 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t743 = 0.8928571428571429 * t17 * (t635 - rate_dot_rod_leg1)
-            + t738 * (t639 + t268) + t158 * t586;
-        let t746 = 0.24 * actuator_accelerations[0] - t398;
-        let t749 = t410 - 0.24 * t159;
-        let t752 = s_rod_leg1 * (c_cross_leg1 * t746 - s_cross_leg1 * t749);
-        let t760 = c_cross_leg1 * t749 + s_cross_leg1 * t746;
-        let t770 = 0.42857142857142855 * (t66 * s_cross_leg2);
-        let t775 = 0.8928571428571429 * t62 * (minus_rate_dot_rod_leg2 - t649)
-            - t770 * (t653 + t288) + t281 * t602;
-        let t778 = 0.24 * actuator_accelerations[1] - t402;
-        let t781 = t414 - 0.24 * t282;
-        let t784 = minus_s_rod_leg2 * (c_cross_leg2 * t778 - s_cross_leg2 * t781);
-        let t789 = c_cross_leg2 * t781 + s_cross_leg2 * t778;
-        let t805 = 0.42857142857142855 * (t120 * s_cross_leg3);
-        let t810 = 0.8928571428571429 * t117 * (t667 - rate_dot_rod_leg3)
-            + t805 * (t671 + t328) - t323 * t616;
-        let t813 = t418 + 0.24 * t324;
-        let t816 = t406 + 0.24 * actuator_accelerations[2];
-        let t819 = s_rod_leg3 * (s_cross_leg3 * t813 + c_cross_leg3 * t816);
-        let t824 = s_cross_leg3 * t816 - c_cross_leg3 * t813;
-        let t841 = t158 * t266 - (1.594387755102041 * (t17 * t453) + t738 * t455);
-        let t856 = 1.594387755102041 * (t62 * t503) + t770 * t505 + t281 * t309;
-        let t871 = 1.594387755102041 * (t117 * t557) + t805 * t559 + t323 * t349;
+        let t385 = 0.24 * actuator_accelerations[0];
+        let t390 = 0.24 * t147;
+        let t392 = pose[1] * minus_rate_cross_leg1;
+        let t393 = rate_rod_leg1 * t392;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t385 + s_armcross_leg1 * t336 + c_armcross_leg1 * t330
+                + s_cross_leg1 * t390 + t393 + t393);
+        let t399 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t401 = t383 + t399 + t383;
+        let t402 = c_rod_leg1 * t401;
+        let t403 = t162 * t402;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t146 * garm_vy_leg1);
+        let t409 = 3.188775510204082 * (minus_rate_cross_leg1 * t392);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t380;
+        let gcross_vx_leg2 = t67 * (t263 - t93 * t89);
+        let t417 = minus_rate_rod_leg2 * (1.7857142857142858 * t271);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t51;
+        let t424 = 0.24 * t255;
+        let t426 = t51 * rate_cross_leg2;
+        let t427 = minus_rate_rod_leg2 * t426;
+        let t431 = 0.24 * actuator_accelerations[1];
+        let t433 = t263 * t336 - t265 * t332 - c_armcross_leg2 * t330
+            - (s_cross_leg2 * t424 - t427 - t427) - c_cross_leg2 * t431;
+        let rate_dot_cross_leg2 = t67 * t433;
+        let t435 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t437 = t417 + t435 + t417;
+        let t438 = c_rod_leg2 * t437;
+        let t439 = t68 * t438;
+        let t441 = rate_cross_leg2 * t426;
+        let t442 = 2.76156059880242 * t441;
+        let minus_gcross_vy_leg2 = t67 * (t265 + t167 * t89);
+        let t448 = 1.594387755102041 * t441;
+        let minus_gcross_vz_leg2 = t67 * t79;
+        let gcross_vx_leg3 = t138 * (t291 - t141 * t133);
+        let t456 = rate_rod_leg3 * (1.7857142857142858 * t299);
+        let s_rod_leg3 = 1.7857142857142858 * t50;
+        let t463 = 0.24 * t285;
+        let t465 = t50 * rate_cross_leg3;
+        let t466 = rate_rod_leg3 * t465;
+        let t470 = 0.24 * actuator_accelerations[2];
+        let t472 = t291 * t336 + t293 * t332 + minus_c_armcross_leg3 * t330
+            - (s_cross_leg3 * t463 - t466 - t466) - c_cross_leg3 * t470;
+        let rate_dot_cross_leg3 = t138 * t472;
+        let t474 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t476 = t456 + t474 + t456;
+        let t477 = c_rod_leg3 * t476;
+        let t478 = t139 * t477;
+        let t480 = rate_cross_leg3 * t465;
+        let t481 = 2.76156059880242 * t480;
+        let gcross_vy_leg3 = t138 * (t293 - t173 * t133);
+        let t487 = 1.594387755102041 * t480;
+        let gcross_vz_leg3 = t138 * t123;
+        let t491 = t403 - minus_rate_dot_cross_leg1;
+        let t493 = t162 * t491 - t402;
+        let t495 = t392 * t392;
+        let t503 = rate_dot_cross_leg2 - t439;
+        let t505 = t68 * t503 + t438;
+        let t507 = t426 * t426;
+        let t510 = t66 * (t507 - t271 * t271);
+        let t517 = rate_dot_cross_leg3 - t478;
+        let t519 = t477 + t139 * t517;
+        let t521 = t465 * t465;
+        let t524 = t137 * (t521 - t299 * t299);
+        let t531 = t149 * t409;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t332 + t248);
+        let t536 = 3.188775510204082 * t495;
+        let t539 = s_rod_leg1 * (t531 + rate_dot_rod_leg1) + c_rod_leg1 * (t244 - t536);
+        let t546 = 3.188775510204082 * (t271 * t426);
+        let t547 = 0.8660254037844387 * t336;
+        let t548 = 0.5 * t332;
+        let t549 = t547 + t548;
+        let minus_rate_dot_rod_leg2 = t67 * (t549 + t277);
+        let t554 = 3.188775510204082 * t507;
+        let t557 = minus_s_rod_leg2 * (t546 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t262 - t554);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t66;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t66;
+        let t568 = 3.188775510204082 * (t299 * t465);
+        let t569 = t547 - t548;
+        let rate_dot_rod_leg3 = t138 * (t569 + t305);
+        let t574 = 3.188775510204082 * t521;
+        let t577 = s_rod_leg3 * (t568 + rate_dot_rod_leg3) + c_rod_leg3 * (t290 - t574);
+        let grod_vx_leg3 = 1.5464739353293548 * t137;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t137;
+        let t601 = 1.7857142857142858 * t332;
+        let t607 = 1.7857142857142858 * t549;
+        let t615 = 1.7857142857142858 * t569;
+        let t628 = 0.8928571428571429 * t16;
+        let t636 = t628 * (t531 - rate_dot_rod_leg1) + t162 * t628 * (t536 + t244)
+            + t146 * t401;
+        let t638 = t385 - t347;
+        let t640 = t359 - t390;
+        let t643 = s_rod_leg1 * (c_cross_leg1 * t638 - s_cross_leg1 * t640);
+        let t651 = c_cross_leg1 * t640 + s_cross_leg1 * t638;
+        let t657 = 0.8928571428571429 * t59;
+        let t665 = t657 * (minus_rate_dot_rod_leg2 - t546) - t68 * t657 * (t554 + t262)
+            + t254 * t437;
+        let t667 = t431 - t351;
+        let t669 = t363 - t424;
+        let t672 = minus_s_rod_leg2 * (c_cross_leg2 * t667 - s_cross_leg2 * t669);
+        let t677 = c_cross_leg2 * t669 + s_cross_leg2 * t667;
+        let t688 = 0.8928571428571429 * t108;
+        let t696 = t688 * (t568 - rate_dot_rod_leg3) + t139 * t688 * (t574 + t290)
+            - t284 * t476;
+        let t698 = t367 + t463;
+        let t700 = t355 + t470;
+        let t703 = s_rod_leg3 * (s_cross_leg3 * t698 + c_cross_leg3 * t700);
+        let t708 = s_cross_leg3 * t700 - c_cross_leg3 * t698;
+        let t722 = t146 * t242 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
+        let t735 = rate_dot_cross_leg2 * (t59 * minus_grod_vy_leg2) + t254 * t273;
+        let t748 = rate_dot_cross_leg3 * (t108 * minus_grod_vy_leg3) + t284 * t301;
         Ok([
             [
-                t387, garm_vx_leg1 * actuator_accelerations[0],
+                t336, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                -(garm_vx_leg1 * t398), -(garm_vx_leg2 * t402), garm_vx_leg3 * t406,
-                -(garm_vx_leg1 * t410), -(garm_vx_leg2 * t414), garm_vx_leg3 * t418, t164, t165,
-                t167, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
+                -(garm_vx_leg1 * t347), -(garm_vx_leg2 * t351), garm_vx_leg3 * t355,
+                -(garm_vx_leg1 * t359), -(garm_vx_leg2 * t363), garm_vx_leg3 * t367, t156, t157,
+                t159, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t462,
-                gcross_vx_leg2 * t512 - t514, gcross_vx_leg3 * t566 - t568,
-                -(minus_gcross_vx_leg1 * t588), gcross_vx_leg2 * t604 - 4.9313582121471775 * t609,
-                gcross_vx_leg3 * t622 + 4.9313582121471775 * t627, -(minus_gcross_vx_leg1 * t642),
-                gcross_vx_leg2 * t656 + minus_grod_vx_leg2 * t505,
-                gcross_vx_leg3 * t674 + grod_vx_leg3 * t559, -(minus_gcross_vx_leg1 * t686),
-                gcross_vx_leg2 * t693 + t514, gcross_vx_leg3 * t701 + t568,
-                -(minus_gcross_vx_leg1 * t707),
-                -(gcross_vx_leg2 * t713 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t721 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t403,
+                gcross_vx_leg2 * t439 - t442, gcross_vx_leg3 * t478 - t481,
+                -(minus_gcross_vx_leg1 * t493),
+                -(gcross_vx_leg2 * t505 + 4.9313582121471775 * t510),
+                gcross_vx_leg3 * t519 + 4.9313582121471775 * t524, -(minus_gcross_vx_leg1 * t539),
+                gcross_vx_leg2 * t557 + minus_grod_vx_leg2 * t435,
+                gcross_vx_leg3 * t577 + grod_vx_leg3 * t474, -(minus_gcross_vx_leg1 * t491),
+                gcross_vx_leg2 * t503 + t442, gcross_vx_leg3 * t517 + t481,
+                -(minus_gcross_vx_leg1 * t601),
+                -(gcross_vx_leg2 * t607 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t615 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t743 + minus_gcross_vx_leg1 * t752,
-                garm_vx_leg2 * t775 + gcross_vx_leg2 * t784
-                    + minus_grod_vx_leg2 * (c_rod_leg2 * t789),
-                garm_vx_leg3 * t810 - gcross_vx_leg3 * t819
-                    - grod_vx_leg3 * (c_rod_leg3 * t824),
-                garm_vx_leg1 * t841 - minus_gcross_vx_leg1 * t760,
-                garm_vx_leg2 * t856 + gcross_vx_leg2 * t789,
-                garm_vx_leg3 * t871 + gcross_vx_leg3 * t824,
+                garm_vx_leg1 * t636 + minus_gcross_vx_leg1 * t643,
+                garm_vx_leg2 * t665 + gcross_vx_leg2 * t672 + 1.5464739353293548 * t677,
+                garm_vx_leg3 * t696 - gcross_vx_leg3 * t703 - 1.5464739353293548 * t708,
+                garm_vx_leg1 * t722 - minus_gcross_vx_leg1 * t651,
+                garm_vx_leg2 * t735 + gcross_vx_leg2 * t677,
+                garm_vx_leg3 * t748 + gcross_vx_leg3 * t708,
             ],
             [
-                t383, garm_vy_leg1 * actuator_accelerations[0],
+                t332, garm_vy_leg1 * actuator_accelerations[0],
                 garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
-                -(garm_vy_leg1 * t398), -(garm_vy_leg2 * t402), garm_vy_leg3 * t406,
-                -(garm_vy_leg1 * t410), -(garm_vy_leg2 * t414), garm_vy_leg3 * t418, t194, t195,
-                t197, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
+                -(garm_vy_leg1 * t347), -(garm_vy_leg2 * t351), garm_vy_leg3 * t355,
+                -(garm_vy_leg1 * t359), -(garm_vy_leg2 * t363), garm_vy_leg3 * t367, t186, t187,
+                t189, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg1,
-                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t462 - t466,
-                -(minus_gcross_vy_leg2 * t512 + t522), gcross_vy_leg3 * t566 + t576,
-                5.694241982507289 * (t161 * (t590 - t264 * t264))
-                    - minus_gcross_vy_leg1 * t588,
-                -(minus_gcross_vy_leg2 * t604 + 2.8471209912536444 * t609),
-                gcross_vy_leg3 * t622 - 2.8471209912536444 * t627,
-                -(minus_gcross_vy_leg1 * t642 + grod_vy_leg1 * t455),
-                minus_grod_vy_leg2 * t505 - minus_gcross_vy_leg2 * t656,
-                gcross_vy_leg3 * t674 - minus_grod_vy_leg3 * t559,
-                t466 - minus_gcross_vy_leg1 * t686,
-                t522 - minus_gcross_vy_leg2 * t693,
-                gcross_vy_leg3 * t701 - t576,
-                -(minus_gcross_vy_leg1 * t707
+                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t403 - t409,
+                -(minus_gcross_vy_leg2 * t439 + t448), gcross_vy_leg3 * t478 + t487,
+                5.694241982507289 * (t150 * (t495 - t240 * t240))
+                    - minus_gcross_vy_leg1 * t493,
+                -(2.8471209912536444 * t510 - minus_gcross_vy_leg2 * t505),
+                gcross_vy_leg3 * t519 - 2.8471209912536444 * t524,
+                -(minus_gcross_vy_leg1 * t539 + grod_vy_leg1 * t399),
+                minus_grod_vy_leg2 * t435 - minus_gcross_vy_leg2 * t557,
+                gcross_vy_leg3 * t577 - minus_grod_vy_leg3 * t474,
+                t409 - minus_gcross_vy_leg1 * t491,
+                t448 - minus_gcross_vy_leg2 * t503,
+                gcross_vy_leg3 * t517 - t487,
+                -(minus_gcross_vy_leg1 * t601
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t713 - 0.8928571428571429 * rate_dot_cross_leg2,
-                gcross_vy_leg3 * t721 - 0.8928571428571429 * rate_dot_cross_leg3,
+                minus_gcross_vy_leg2 * t607 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t615 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t743 + minus_gcross_vy_leg1 * t752
-                    - 1.7857142857142858 * t760,
-                garm_vy_leg2 * t775 - minus_gcross_vy_leg2 * t784
-                    + 0.8928571428571429 * t789,
-                garm_vy_leg3 * t810 - gcross_vy_leg3 * t819 + 0.8928571428571429 * t824,
-                garm_vy_leg1 * t841 - minus_gcross_vy_leg1 * t760,
-                garm_vy_leg2 * t856 - minus_gcross_vy_leg2 * t789,
-                garm_vy_leg3 * t871 + gcross_vy_leg3 * t824,
+                garm_vy_leg1 * t636 + minus_gcross_vy_leg1 * t643
+                    - 1.7857142857142858 * t651,
+                garm_vy_leg2 * t665 - minus_gcross_vy_leg2 * t672
+                    + 0.8928571428571429 * t677,
+                garm_vy_leg3 * t696 - gcross_vy_leg3 * t703 + 0.8928571428571429 * t708,
+                garm_vy_leg1 * t722 - minus_gcross_vy_leg1 * t651,
+                garm_vy_leg2 * t735 - minus_gcross_vy_leg2 * t677,
+                garm_vy_leg3 * t748 + gcross_vy_leg3 * t708,
             ],
             [
-                t381 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
+                t330 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
                 -(minus_garm_vz_leg2 * actuator_accelerations[1]),
-                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t398,
-                minus_garm_vz_leg2 * t402, -(minus_garm_vz_leg3 * t406), minus_garm_vz_leg1 * t410,
-                minus_garm_vz_leg2 * t414, -(minus_garm_vz_leg3 * t418), -t239, -t240, -t242,
+                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t347,
+                minus_garm_vz_leg2 * t351, -(minus_garm_vz_leg3 * t355), minus_garm_vz_leg1 * t359,
+                minus_garm_vz_leg2 * t363, -(minus_garm_vz_leg3 * t367), -t222, -t223, -t225,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
                 -minus_garm_vz_leg1, -minus_garm_vz_leg2, -minus_garm_vz_leg3,
-                minus_gcross_vz_leg1 * t462, gcross_vz_leg2 * t512, gcross_vz_leg3 * t566,
-                -(minus_gcross_vz_leg1 * t588), gcross_vz_leg2 * t604, gcross_vz_leg3 * t622,
-                -(minus_gcross_vz_leg1 * t642), gcross_vz_leg2 * t656, gcross_vz_leg3 * t674,
-                -(minus_gcross_vz_leg1 * t686), gcross_vz_leg2 * t693, gcross_vz_leg3 * t701,
-                -(minus_gcross_vz_leg1 * t707), -(gcross_vz_leg2 * t713), gcross_vz_leg3 * t721,
-                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t752 - minus_garm_vz_leg1 * t743,
-                gcross_vz_leg2 * t784 - minus_garm_vz_leg2 * t775,
-                -(minus_garm_vz_leg3 * t810 + gcross_vz_leg3 * t819),
-                -(minus_garm_vz_leg1 * t841 + minus_gcross_vz_leg1 * t760),
-                gcross_vz_leg2 * t789 - minus_garm_vz_leg2 * t856,
-                gcross_vz_leg3 * t824 - minus_garm_vz_leg3 * t871,
+                minus_gcross_vz_leg1 * t403, -(minus_gcross_vz_leg2 * t439), gcross_vz_leg3 * t478,
+                -(minus_gcross_vz_leg1 * t493), minus_gcross_vz_leg2 * t505, gcross_vz_leg3 * t519,
+                -(minus_gcross_vz_leg1 * t539), -(minus_gcross_vz_leg2 * t557),
+                gcross_vz_leg3 * t577, -(minus_gcross_vz_leg1 * t491),
+                -(minus_gcross_vz_leg2 * t503), gcross_vz_leg3 * t517,
+                -(minus_gcross_vz_leg1 * t601), minus_gcross_vz_leg2 * t607, gcross_vz_leg3 * t615,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t643 - minus_garm_vz_leg1 * t636,
+                -(minus_gcross_vz_leg2 * t672 + minus_garm_vz_leg2 * t665),
+                -(minus_garm_vz_leg3 * t696 + gcross_vz_leg3 * t703),
+                -(minus_garm_vz_leg1 * t722 + minus_gcross_vz_leg1 * t651),
+                -(minus_gcross_vz_leg2 * t677 + minus_garm_vz_leg2 * t735),
+                gcross_vz_leg3 * t708 - minus_garm_vz_leg3 * t748,
             ],
         ])
     }
@@ -5947,7 +5713,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 885 operations (301 additions, 568 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 804 intermediates.
+    /// 824 operations (278 additions, 530 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 743 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5956,402 +5722,389 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t1 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t4 = pose[0] - 0.025 + 0.1;
-        let t5 = 0.5 * t4;
-        let t6 = 0.8660254037844387 * t1 - t5;
-        let t8 = pose[2] * pose[2];
-        let t10 = 0.2304 * (t6 * t6 + t8);
-        let t11 = 1.0 / t10;
-        let t12 = 0.48 * t6;
-        let t13 = t4 * t4;
-        let t16 = t13 + t1 * t1 + t8;
-        let t18 = t16 - 0.3136 + 0.0576;
-        let t20 = 0.48 * pose[2];
-        let t22 = t10 - t18 * t18;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
-        let t28 = 0.8660254037844387 * t4;
-        let t30 = t28 + 0.5 * t1;
-        let t31 = t30 * t30;
-        let t33 = 1.0 - 3.188775510204082 * t31;
-        ::overact::guard::reach(t33, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t33);
+        let t0 = pose[0] + 0.05;
+        let t1 = 0.025 + t0;
+        let t2 = t1 * t1;
+        let t4 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t7 = pose[2] * pose[2];
+        let t8 = t2 + t4 * t4 + t7;
+        let t11 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t13 = 0.8660254037844387 * t1 - 0.5 * t11;
+        let t14 = pose[1] + t13;
+        let t15 = t14 * t14;
+        let t17 = 0.2304 * (t8 - t15);
+        let t18 = 1.0 / t17;
+        let t20 = 0.5 * t1;
+        let t22 = 0.48 * (0.8660254037844387 * t4 - t20);
+        let t23 = t8 - 0.3136;
+        let t24 = t23 + 0.0576;
+        let t26 = 0.48 * pose[2];
+        let t28 = t17 - t24 * t24;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let c_arm_leg2 = t18 * (t22 * t24 - t26 * t29);
+        let t34 = 1.0 - 3.188775510204082 * t15;
+        ::overact::guard::reach(t34, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t34);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t35 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t23 / t35;
+        let t36 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t29 / t36;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
-        let c_cross_leg2 = (t16 - (0.0576 + t31) - 0.3136 * t33) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t18 * (t26 * t24 + t22 * t29);
+        let c_cross_leg2 = (t23 + -0.0576) / t36;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t50 = 1.0 / s_cross_leg2;
-        let t51 = 4.166666666666667 * t50;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t51;
-        let t54 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t56 = t5 + 0.8660254037844387 * t54;
-        let t59 = 0.2304 * (t56 * t56 + t8);
-        let t62 = t13 + t54 * t54 + t8;
-        let t64 = t62 - 0.3136 + 0.0576;
-        let t66 = t59 - t64 * t64;
-        ::overact::guard::reach(t66, "leg3")?;
-        let t67 = ::overact::math::sqrt(t66);
-        let t70 = t28 - 0.5 * t54;
-        let t71 = t70 * t70;
-        let t73 = 1.0 - 3.188775510204082 * t71;
-        ::overact::guard::reach(t73, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t73);
+        let t47 = 1.0 / s_cross_leg2;
+        let t48 = 4.166666666666667 * t47;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t48;
+        let t52 = t2 + t11 * t11 + t7;
+        let t53 = t13 * t13;
+        let t55 = 0.2304 * (t52 - t53);
+        let t56 = t52 - 0.3136;
+        let t57 = t56 + 0.0576;
+        let t59 = t55 - t57 * t57;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 1.0 - 3.188775510204082 * t53;
+        ::overact::guard::reach(t62, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t75 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t67 / t75;
+        let t64 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t60 / t64;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t77 = 1.0 / s_cross_leg3;
-        let t78 = 4.166666666666667 * t77;
-        let t79 = 1.0 / t59;
-        let t80 = 0.48 * t56;
-        let minus_c_arm_leg3 = t79 * (t80 * t64 + t20 * t67);
-        let c_cross_leg3 = (t62 - (0.0576 + t71) - 0.3136 * t73) / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t79 * (t80 * t67 - t20 * t64);
+        let t66 = 1.0 / s_cross_leg3;
+        let t67 = 4.166666666666667 * t66;
+        let t68 = 1.0 / t55;
+        let t71 = 0.48 * (t20 + 0.8660254037844387 * t11);
+        let minus_c_arm_leg3 = t68 * (t71 * t57 + t26 * t60);
+        let c_cross_leg3 = (-0.0576 + t56) / t64;
+        let s_arm_leg3 = t68 * (t71 * t60 - t26 * t57);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t98 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t99 = 1.0 / c_rod_leg3;
-        let t100 = 1.7857142857142858 * t99;
-        let t101 = t70 * t100;
-        let garm_vy_leg3 = t78 * (t98 - 0.5 * t101);
+        let t85 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t86 = 1.0 / c_rod_leg3;
+        let t87 = 1.7857142857142858 * t86;
+        let t88 = t13 * t87;
+        let garm_vy_leg3 = t67 * (t85 - 0.5 * t88);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t109 = 0.8660254037844387 * c_armcross_leg2;
-        let t110 = 1.0 / c_rod_leg2;
-        let t111 = 1.7857142857142858 * t110;
-        let t112 = t30 * t111;
-        let garm_vy_leg2 = t51 * (t109 + 0.5 * t112);
+        let t96 = 0.8660254037844387 * c_armcross_leg2;
+        let t97 = 1.0 / c_rod_leg2;
+        let t98 = 1.7857142857142858 * t97;
+        let t99 = t14 * t98;
+        let garm_vy_leg2 = t48 * (t96 + 0.5 * t99);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t78;
-        let t123 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t51 * (0.8660254037844387 * t112 - t123);
-        let t127 = pose[0] + 0.05 - 0.2;
-        let t128 = t127 * t127;
-        let t130 = 0.2304 * (t128 + t8);
-        let t131 = pose[1] * pose[1];
-        let t133 = t128 + t131 + t8;
-        let t135 = t133 - 0.3136 + 0.0576;
-        let t137 = t130 - t135 * t135;
-        ::overact::guard::reach(t137, "leg1")?;
-        let t138 = ::overact::math::sqrt(t137);
-        let t141 = 1.0 - 3.188775510204082 * t131;
-        ::overact::guard::reach(t141, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t141);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t67;
+        let t110 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t48 * (0.8660254037844387 * t99 - t110);
+        let t113 = t0 - 0.2;
+        let t115 = t113 * t113 + t7;
+        let t116 = 0.2304 * t115;
+        let t117 = pose[1] * pose[1];
+        let t119 = t115 + t117 - 0.3136;
+        let t120 = t119 + 0.0576;
+        let t122 = t116 - t120 * t120;
+        ::overact::guard::reach(t122, "leg1")?;
+        let t123 = ::overact::math::sqrt(t122);
+        let t125 = 1.0 - 3.188775510204082 * t117;
+        ::overact::guard::reach(t125, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t125);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t143 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t138 / t143;
+        let t127 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t123 / t127;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t145 = 1.0 / s_cross_leg1;
-        let t146 = 4.166666666666667 * t145;
+        let t129 = 1.0 / s_cross_leg1;
+        let t130 = 4.166666666666667 * t129;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t148 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t146 * t148;
-        let t151 = 1.0 / t130;
-        let t152 = 0.48 * t127;
-        let c_arm_leg1 = t151 * (t152 * t135 - t20 * t138);
-        let minus_s_arm_leg1 = t151 * (t20 * t135 + t152 * t138);
-        let c_cross_leg1 = (t133 - (0.0576 + t131) - 0.3136 * t141)
-            / (0.2688 * c_rod_leg1);
+        let t132 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t130 * t132;
+        let t135 = 1.0 / t116;
+        let t136 = 0.48 * t113;
+        let c_arm_leg1 = t135 * (t136 * t120 - t26 * t123);
+        let minus_s_arm_leg1 = t135 * (t26 * t120 + t136 * t123);
+        let c_cross_leg1 = (-0.0576 + t119) / t127;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t146;
-        let t172 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t130;
+        let t152 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t146;
-        let t179 = 0.5 * minus_c_armcross_leg3;
-        let garm_vx_leg3 = t78 * (t179 + 0.8660254037844387 * t101);
-        let t184 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t189 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t191 = garm_vx_leg2 * t172 - garm_vy_leg2 * t184 - minus_garm_vz_leg2 * t189;
-        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
-        let t192 = 1.0 / t191;
-        let t193 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t192;
-        let t198 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t192;
-        let t204 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t192;
-        let t205 = acceleration[2] + 9.81;
-        let t208 = t172 * t192;
-        let t210 = t184 * t192;
-        let t213 = t189 * t192;
-        let t219 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t192;
-        let t224 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t192;
-        let t230 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t192;
-        let t236 = 0.24 * c_cross_leg1;
-        let t239 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
-        let rate_arm_leg1 = t146 * (t239 + t148 * twist[1]);
-        let t243 = rate_arm_leg1 * rate_arm_leg1;
-        let t245 = c_cross_leg1 * t145;
-        let t247 = t236 * garm_vy_leg1;
-        let t253 = t245 * t239 + t247 * twist[1] + s_armcross_leg1 * twist[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t130;
+        let t159 = 0.5 * minus_c_armcross_leg3;
+        let garm_vx_leg3 = t67 * (t159 + 0.8660254037844387 * t88);
+        let t164 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t169 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t171 = garm_vx_leg2 * t152 - garm_vy_leg2 * t164 - minus_garm_vz_leg2 * t169;
+        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
+        let t172 = 1.0 / t171;
+        let t173 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t172;
+        let t178 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t172;
+        let t184 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t172;
+        let t185 = acceleration[2] + 9.81;
+        let t188 = t152 * t172;
+        let t190 = t164 * t172;
+        let t193 = t169 * t172;
+        let t199 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t172;
+        let t204 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t172;
+        let t210 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t172;
+        let t216 = 0.24 * c_cross_leg1;
+        let t220 = t132 * twist[1];
+        let rate_arm_leg1 = t130
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t220);
+        let t223 = rate_arm_leg1 * rate_arm_leg1;
+        let t230 = t216 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t253;
-        let t255 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t230;
+        let t232 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t257 = rate_rod_leg1 * rate_rod_leg1;
-        let t258 = t255 + t257;
-        let t261 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t236 * t243 + t143 * t258;
-        let t262 = pose[1] * minus_rate_cross_leg1;
-        let t266 = acceleration[1] - (minus_rate_cross_leg1 * t262 - pose[1] * t258);
-        let rate_dot_arm_leg1 = t146 * (t261 + t148 * t266);
-        let t275 = 0.24 * c_cross_leg2;
-        let t280 = t109 * twist[1] - t123 * twist[0] - s_armcross_leg2 * twist[2];
-        let t281 = 0.8660254037844387 * twist[0];
-        let t282 = 0.5 * twist[1];
-        let t283 = t281 + t282;
-        let rate_arm_leg2 = t51 * (t280 + t112 * t283);
-        let t287 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t111 * t283;
-        let t290 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t291 = 0.5 * s_armcross_leg2;
-        let t293 = 0.8660254037844387 * s_armcross_leg2;
-        let t298 = c_cross_leg2 * t50;
-        let t302 = t275 * (t51 * t112);
-        let t304 = t291 * twist[0] - t293 * twist[1] - c_armcross_leg2 * twist[2]
-            - t298 * t280 - t302 * t283;
-        let rate_cross_leg2 = t111 * t304;
-        let t306 = rate_cross_leg2 * rate_cross_leg2;
-        let t307 = t290 + t306;
-        let t310 = t109 * acceleration[1] - t123 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t275 * t287 + t35 * t307;
-        let t311 = 0.8660254037844387 * acceleration[0];
-        let t312 = 0.5 * acceleration[1];
-        let t313 = t311 + t312;
-        let t315 = t30 * rate_cross_leg2;
-        let t318 = t313 + t30 * t307 - rate_cross_leg2 * t315;
-        let rate_dot_arm_leg2 = t51 * (t310 + t112 * t318);
-        let t327 = 0.24 * c_cross_leg3;
-        let t332 = t179 * twist[0] + t98 * twist[1] - s_armcross_leg3 * twist[2];
-        let t333 = t281 - t282;
-        let rate_arm_leg3 = t78 * (t332 + t101 * t333);
-        let t337 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t100 * t333;
-        let t340 = rate_rod_leg3 * rate_rod_leg3;
-        let t341 = 0.5 * s_armcross_leg3;
-        let t343 = 0.8660254037844387 * s_armcross_leg3;
-        let t348 = c_cross_leg3 * t77;
-        let t352 = t327 * (t78 * t101);
-        let t354 = t341 * twist[0] + t343 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t348 * t332 - t352 * t333;
-        let rate_cross_leg3 = t100 * t354;
-        let t356 = rate_cross_leg3 * rate_cross_leg3;
-        let t357 = t340 + t356;
-        let t360 = t179 * acceleration[0] + t98 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t327 * t337 + t75 * t357;
-        let t361 = t311 - t312;
-        let t362 = t70 * rate_cross_leg3;
-        let t366 = t361 - (rate_cross_leg3 * t362 - t70 * t357);
-        let rate_dot_arm_leg3 = t78 * (t360 + t101 * t366);
-        let t370 = 9.81 * c_arm_leg1;
-        let t371 = 9.81 * c_arm_leg2;
-        let t372 = 9.81 * minus_c_arm_leg3;
-        let t373 = 9.81 * minus_s_arm_leg1;
-        let t374 = 9.81 * minus_s_arm_leg2;
-        let t375 = 9.81 * s_arm_leg3;
-        let t379 = grod_vy_leg1 * t198;
-        let t381 = 3.188775510204082 * (t253 * t262);
-        let t382 = t379 * t381;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t247;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t245 + s_armcross_leg1);
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t245);
-        let t394 = minus_gcross_vy_leg1 * t198 - minus_gcross_vx_leg1 * t193
-            - minus_gcross_vz_leg1 * t204;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t405 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t409 = t245 * t261 + t247 * t266 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t243 + t405
-            + t405;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t409;
-        let t411 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t413 = rate_rod_leg1 * (1.7857142857142858 * t253);
-        let t414 = t411 + t413;
-        let t417 = c_rod_leg1 * (1.7857142857142858 * t405);
-        let t418 = s_rod_leg1 * t414 + t417;
-        let t421 = grod_vy_leg1 * t210;
-        let t422 = t421 * t381;
-        let t427 = minus_gcross_vy_leg1 * t210 - minus_gcross_vx_leg1 * t208
-            - minus_gcross_vz_leg1 * t213;
-        let t434 = minus_gcross_vx_leg1 * t224 - minus_gcross_vy_leg1 * t219
-            + minus_gcross_vz_leg1 * t230;
-        let t436 = grod_vy_leg1 * t219;
-        let t437 = t436 * t381;
-        let gcross_vx_leg2 = t111 * (t123 * t298 + t291 - 0.8660254037844387 * t302);
-        let minus_gcross_vy_leg2 = t111 * (t109 * t298 + t293 + 0.5 * t302);
-        let gcross_vz_leg2 = t111 * (s_armcross_leg2 * t298 - c_armcross_leg2);
-        let t456 = gcross_vx_leg2 * t193 + minus_gcross_vy_leg2 * t198
-            + gcross_vz_leg2 * t204;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t30;
-        let t466 = t30 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t469 = t291 * acceleration[0] - t293 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2]
-            - (0.24 * s_cross_leg2 * t287 - t466 - t466);
-        let t473 = t469 - t298 * t310 - t302 * t318;
-        let rate_dot_cross_leg2 = t111 * t473;
-        let t475 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t477 = minus_rate_rod_leg2 * (1.7857142857142858 * t304);
-        let t478 = t475 + t477;
-        let t481 = c_rod_leg2 * (1.7857142857142858 * t466);
-        let t482 = minus_s_rod_leg2 * t478 + t481;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t110;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t110;
-        let t488 = minus_grod_vy_leg2 * t198 - minus_grod_vx_leg2 * t193;
-        let t490 = 3.188775510204082 * (t304 * t315);
-        let t491 = t488 * t490;
-        let t497 = gcross_vx_leg2 * t208 + minus_gcross_vy_leg2 * t210
-            + gcross_vz_leg2 * t213;
-        let t501 = minus_grod_vy_leg2 * t210 - minus_grod_vx_leg2 * t208;
-        let t502 = t501 * t490;
-        let t506 = minus_grod_vx_leg2 * t224 - minus_grod_vy_leg2 * t219;
-        let t507 = t506 * t490;
-        let t512 = gcross_vx_leg2 * t224 + minus_gcross_vy_leg2 * t219
-            + gcross_vz_leg2 * t230;
-        let gcross_vx_leg3 = t100 * (t341 - t179 * t348 - 0.8660254037844387 * t352);
-        let gcross_vy_leg3 = t100 * (t343 - t98 * t348 + 0.5 * t352);
-        let gcross_vz_leg3 = t100 * (s_armcross_leg3 * t348 + minus_c_armcross_leg3);
-        let t532 = gcross_vx_leg3 * t193 - gcross_vy_leg3 * t198 + gcross_vz_leg3 * t204;
-        let s_rod_leg3 = 1.7857142857142858 * t70;
-        let t542 = t70 * (rate_cross_leg3 * rate_rod_leg3);
-        let t545 = t341 * acceleration[0] + t343 * acceleration[1]
+        let t234 = rate_rod_leg1 * rate_rod_leg1;
+        let t240 = acceleration[1] + pose[1] * t234;
+        let t242 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t216 * t223 + 0.56 * c_rod_leg1 * (t232 + t234) + t132 * t240;
+        let rate_dot_arm_leg1 = t130 * t242;
+        let t249 = 0.24 * c_cross_leg2;
+        let t254 = t96 * twist[1] - t110 * twist[0] - s_armcross_leg2 * twist[2];
+        let t255 = 0.8660254037844387 * twist[0];
+        let t256 = 0.5 * twist[1];
+        let t257 = t255 + t256;
+        let t258 = t99 * t257;
+        let rate_arm_leg2 = t48 * (t254 + t258);
+        let t261 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t98 * t257;
+        let t265 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t266 = 0.5 * s_armcross_leg2;
+        let t268 = 0.8660254037844387 * s_armcross_leg2;
+        let t273 = c_cross_leg2 * t47;
+        let t276 = t99 * t273;
+        let t278 = t266 * twist[0] - t268 * twist[1] - c_armcross_leg2 * twist[2]
+            - t273 * t254 - t276 * t257;
+        let rate_cross_leg2 = t98 * t278;
+        let t280 = rate_cross_leg2 * rate_cross_leg2;
+        let t284 = t96 * acceleration[1] - t110 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t249 * t261
+            + 0.56 * c_rod_leg2 * (t265 + t280);
+        let t285 = 0.8660254037844387 * acceleration[0];
+        let t286 = 0.5 * acceleration[1];
+        let t287 = t285 + t286;
+        let t289 = t287 + t14 * t265;
+        let rate_dot_arm_leg2 = t48 * (t284 + t99 * t289);
+        let t298 = 0.24 * c_cross_leg3;
+        let t303 = t159 * twist[0] + t85 * twist[1] - s_armcross_leg3 * twist[2];
+        let t304 = t255 - t256;
+        let t305 = t88 * t304;
+        let rate_arm_leg3 = t67 * (t303 + t305);
+        let t308 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t87 * t304;
+        let t312 = rate_rod_leg3 * rate_rod_leg3;
+        let t313 = 0.5 * s_armcross_leg3;
+        let t315 = 0.8660254037844387 * s_armcross_leg3;
+        let t320 = c_cross_leg3 * t66;
+        let t323 = t88 * t320;
+        let t325 = t313 * twist[0] + t315 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t320 * t303 - t323 * t304;
+        let rate_cross_leg3 = t87 * t325;
+        let t327 = rate_cross_leg3 * rate_cross_leg3;
+        let t331 = t159 * acceleration[0] + t85 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t298 * t308
+            + 0.56 * c_rod_leg3 * (t312 + t327);
+        let t332 = t285 - t286;
+        let t334 = t332 + t13 * t312;
+        let rate_dot_arm_leg3 = t67 * (t331 + t88 * t334);
+        let t338 = 9.81 * c_arm_leg1;
+        let t339 = 9.81 * c_arm_leg2;
+        let t340 = 9.81 * minus_c_arm_leg3;
+        let t341 = 9.81 * minus_s_arm_leg1;
+        let t342 = 9.81 * minus_s_arm_leg2;
+        let t343 = 9.81 * s_arm_leg3;
+        let t347 = grod_vy_leg1 * t178;
+        let t348 = pose[1] * minus_rate_cross_leg1;
+        let t350 = 3.188775510204082 * (t230 * t348);
+        let t351 = t347 * t350;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t216 * garm_vy_leg1);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t129 * c_arm_leg1);
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (t129 * minus_s_arm_leg1);
+        let t362 = minus_gcross_vy_leg1 * t178 - minus_gcross_vx_leg1 * t173
+            - minus_gcross_vz_leg1 * t184;
+        let t364 = rate_rod_leg1 * (1.7857142857142858 * t230);
+        let t365 = 0.24 * rate_dot_arm_leg1;
+        let t370 = 0.24 * t223;
+        let t372 = t220 * minus_rate_cross_leg1;
+        let t376 = c_cross_leg1 * t365 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t370 + t372 + t372;
+        let t377 = 1.7857142857142858 * t376;
+        let t378 = t132 * t377;
+        let t380 = t364 + t378 + t364;
+        let t381 = c_rod_leg1 * t380;
+        let t382 = t132 * t381;
+        let t385 = grod_vy_leg1 * t190;
+        let t386 = t385 * t350;
+        let t391 = minus_gcross_vy_leg1 * t190 - minus_gcross_vx_leg1 * t188
+            - minus_gcross_vz_leg1 * t193;
+        let t398 = minus_gcross_vx_leg1 * t204 - minus_gcross_vy_leg1 * t199
+            + minus_gcross_vz_leg1 * t210;
+        let t400 = grod_vy_leg1 * t199;
+        let t401 = t400 * t350;
+        let gcross_vx_leg2 = t98 * (t110 * t273 + t266 - 0.8660254037844387 * t276);
+        let minus_gcross_vy_leg2 = t98 * (t96 * t273 + t268 + 0.5 * t276);
+        let minus_gcross_vz_leg2 = t98 * (minus_s_arm_leg2 * t47);
+        let t419 = gcross_vx_leg2 * t173 + minus_gcross_vy_leg2 * t178
+            - minus_gcross_vz_leg2 * t184;
+        let t421 = minus_rate_rod_leg2 * (1.7857142857142858 * t278);
+        let t427 = 0.24 * t261;
+        let t429 = t258 * rate_cross_leg2;
+        let t434 = t266 * acceleration[0] - t268 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t427 - t429 - t429)
+            - t273 * t284;
+        let t436 = t434 - t276 * t289;
+        let t437 = 1.7857142857142858 * t436;
+        let t438 = t99 * t437;
+        let t440 = t421 + t438 + t421;
+        let t441 = c_rod_leg2 * t440;
+        let t442 = t99 * t441;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t97;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t97;
+        let t448 = minus_grod_vy_leg2 * t178 - minus_grod_vx_leg2 * t173;
+        let t449 = t14 * rate_cross_leg2;
+        let t451 = 3.188775510204082 * (t278 * t449);
+        let t452 = t448 * t451;
+        let t458 = gcross_vx_leg2 * t188 + minus_gcross_vy_leg2 * t190
+            - minus_gcross_vz_leg2 * t193;
+        let t462 = minus_grod_vy_leg2 * t190 - minus_grod_vx_leg2 * t188;
+        let t463 = t462 * t451;
+        let t467 = minus_grod_vx_leg2 * t204 - minus_grod_vy_leg2 * t199;
+        let t468 = t467 * t451;
+        let t473 = gcross_vx_leg2 * t204 + minus_gcross_vy_leg2 * t199
+            - minus_gcross_vz_leg2 * t210;
+        let gcross_vx_leg3 = t87 * (t313 - t159 * t320 - 0.8660254037844387 * t323);
+        let gcross_vy_leg3 = t87 * (t315 - t85 * t320 + 0.5 * t323);
+        let gcross_vz_leg3 = t87 * (t66 * s_arm_leg3);
+        let t492 = gcross_vx_leg3 * t173 - gcross_vy_leg3 * t178 + gcross_vz_leg3 * t184;
+        let t494 = rate_rod_leg3 * (1.7857142857142858 * t325);
+        let t500 = 0.24 * t308;
+        let t502 = t305 * rate_cross_leg3;
+        let t507 = t313 * acceleration[0] + t315 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (0.24 * s_cross_leg3 * t337 - t542 - t542);
-        let t549 = t545 - t348 * t360 - t352 * t366;
-        let rate_dot_cross_leg3 = t100 * t549;
-        let t551 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t553 = rate_rod_leg3 * (1.7857142857142858 * t354);
-        let t554 = t551 + t553;
-        let t557 = c_rod_leg3 * (1.7857142857142858 * t542);
-        let t558 = s_rod_leg3 * t554 + t557;
-        let grod_vx_leg3 = 1.5464739353293548 * t99;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t99;
-        let t564 = grod_vx_leg3 * t193 + minus_grod_vy_leg3 * t198;
-        let t566 = 3.188775510204082 * (t354 * t362);
-        let t567 = t564 * t566;
-        let t573 = gcross_vx_leg3 * t208 - gcross_vy_leg3 * t210 + gcross_vz_leg3 * t213;
-        let t577 = grod_vx_leg3 * t208 + minus_grod_vy_leg3 * t210;
-        let t578 = t577 * t566;
-        let t584 = gcross_vy_leg3 * t219 - gcross_vx_leg3 * t224 - gcross_vz_leg3 * t230;
-        let t588 = grod_vx_leg3 * t224 + minus_grod_vy_leg3 * t219;
-        let t589 = t588 * t566;
-        let t591 = t405 - t409;
-        let t595 = t413 + t414;
-        let t597 = 3.188775510204082 * (pose[1] * (t405 + t591)) - c_rod_leg1 * t595;
-        let t599 = t262 * t262;
-        let t602 = 3.188775510204082 * (t599 - t253 * t253);
-        let t611 = t473 - t466;
-        let t615 = t477 + t478;
-        let t617 = 3.188775510204082 * (t30 * (t466 - t611)) - c_rod_leg2 * t615;
-        let t619 = t315 * t315;
-        let t622 = 3.188775510204082 * (t619 - t304 * t304);
-        let t631 = t553 + t554;
-        let t633 = t549 - t542;
-        let t637 = c_rod_leg3 * t631 - 3.188775510204082 * (t70 * (t542 - t633));
-        let t639 = t362 * t362;
-        let t642 = 3.188775510204082 * (t639 - t354 * t354);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t266;
-        let t654 = 3.188775510204082 * t599;
-        let t657 = s_rod_leg1 * (t381 + rate_dot_rod_leg1) + c_rod_leg1 * (t257 - t654);
-        let minus_rate_dot_rod_leg2 = t111 * t318;
-        let t670 = 3.188775510204082 * t619;
-        let t673 = minus_s_rod_leg2 * (t490 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t290 - t670);
-        let rate_dot_rod_leg3 = t100 * t366;
-        let t686 = 3.188775510204082 * t639;
-        let t689 = s_rod_leg3 * (t566 + rate_dot_rod_leg3) + c_rod_leg3 * (t340 - t686);
-        let t701 = t417 + c_rod_leg1 * (1.7857142857142858 * t591);
-        let t710 = c_rod_leg2 * (1.7857142857142858 * t611) - t481;
-        let t719 = c_rod_leg3 * (1.7857142857142858 * t633) - t557;
-        let t726 = 1.7857142857142858 * acceleration[1];
-        let t728 = 1.7857142857142858 * t409;
-        let t737 = 1.7857142857142858 * t473;
-        let t739 = 1.7857142857142858 * t313;
-        let t748 = 1.7857142857142858 * t361;
-        let t750 = 1.7857142857142858 * t549;
-        let t772 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t779 = 0.24 * rate_dot_arm_leg1 - t370;
-        let t782 = t373 - 0.24 * t243;
-        let t785 = s_rod_leg1 * (c_cross_leg1 * t779 - s_cross_leg1 * t782);
-        let t787 = 0.8928571428571429 * t138 * (t381 - rate_dot_rod_leg1)
-            + t772 * (t654 + t257) + t236 * t595 - t394 * t785;
-        let t790 = c_cross_leg1 * t782 + s_cross_leg1 * t779;
-        let t791 = c_rod_leg1 * t790;
-        let t801 = 0.24 * rate_dot_arm_leg2 - t371;
-        let t804 = t374 - 0.24 * t287;
-        let t807 = minus_s_rod_leg2 * (c_cross_leg2 * t801 - s_cross_leg2 * t804);
-        let t811 = c_cross_leg2 * t804 + s_cross_leg2 * t801;
-        let t812 = c_rod_leg2 * t811;
-        let t819 = 0.42857142857142855 * (t30 * s_cross_leg2);
-        let t826 = 0.8928571428571429 * t23 * (minus_rate_dot_rod_leg2 - t490)
-            - t819 * (t670 + t290) + t275 * t615 + t497 * t807;
-        let t833 = t375 + 0.24 * t337;
-        let t836 = t372 + 0.24 * rate_dot_arm_leg3;
-        let t839 = s_rod_leg3 * (s_cross_leg3 * t833 + c_cross_leg3 * t836);
-        let t843 = s_cross_leg3 * t836 - c_cross_leg3 * t833;
-        let t844 = c_rod_leg3 * t843;
-        let t854 = 0.42857142857142855 * (t70 * s_cross_leg3);
-        let t861 = 0.8928571428571429 * t67 * (t566 - rate_dot_rod_leg3)
-            + t854 * (t686 + t340) - t327 * t631 - t584 * t839;
+            - (s_cross_leg3 * t500 - t502 - t502) - t320 * t331;
+        let t509 = t507 - t323 * t334;
+        let t510 = 1.7857142857142858 * t509;
+        let t511 = t88 * t510;
+        let t513 = t494 + t511 + t494;
+        let t514 = c_rod_leg3 * t513;
+        let t515 = t88 * t514;
+        let grod_vx_leg3 = 1.5464739353293548 * t86;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t86;
+        let t521 = grod_vx_leg3 * t173 + minus_grod_vy_leg3 * t178;
+        let t522 = t13 * rate_cross_leg3;
+        let t524 = 3.188775510204082 * (t325 * t522);
+        let t525 = t521 * t524;
+        let t531 = gcross_vx_leg3 * t188 - gcross_vy_leg3 * t190 + gcross_vz_leg3 * t193;
+        let t535 = grod_vx_leg3 * t188 + minus_grod_vy_leg3 * t190;
+        let t536 = t535 * t524;
+        let t542 = gcross_vy_leg3 * t199 - gcross_vx_leg3 * t204 - gcross_vz_leg3 * t210;
+        let t546 = grod_vx_leg3 * t204 + minus_grod_vy_leg3 * t199;
+        let t547 = t546 * t524;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t554 = s_rod_leg1 * t364 + c_rod_leg1 * (1.7857142857142858 * (t372 - t376));
+        let t556 = t132 * t554 - t381;
+        let t558 = t348 * t348;
+        let t561 = 3.188775510204082 * (t558 - t230 * t230);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t14;
+        let t575 = c_rod_leg2 * (1.7857142857142858 * (t436 - t429))
+            - minus_s_rod_leg2 * t421;
+        let t577 = t99 * t575 + t441;
+        let t579 = t449 * t449;
+        let t582 = 3.188775510204082 * (t579 - t278 * t278);
+        let s_rod_leg3 = 1.7857142857142858 * t13;
+        let t596 = c_rod_leg3 * (1.7857142857142858 * (t509 - t502)) - s_rod_leg3 * t494;
+        let t598 = t514 + t88 * t596;
+        let t600 = t522 * t522;
+        let t603 = 3.188775510204082 * (t600 - t325 * t325);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t240;
+        let t615 = 3.188775510204082 * t558;
+        let t618 = s_rod_leg1 * (t350 + rate_dot_rod_leg1) + c_rod_leg1 * (t234 - t615);
+        let minus_rate_dot_rod_leg2 = t98 * t289;
+        let t631 = 3.188775510204082 * t579;
+        let t634 = minus_s_rod_leg2 * (t451 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t265 - t631);
+        let rate_dot_rod_leg3 = t87 * t334;
+        let t647 = 3.188775510204082 * t600;
+        let t650 = s_rod_leg3 * (t524 + rate_dot_rod_leg3) + c_rod_leg3 * (t312 - t647);
+        let t678 = 1.7857142857142858 * acceleration[1];
+        let t689 = 1.7857142857142858 * t287;
+        let t698 = 1.7857142857142858 * t332;
+        let t717 = 0.8928571428571429 * t123;
+        let t720 = t132 * t717;
+        let t726 = t365 - t338;
+        let t728 = t341 - t370;
+        let t731 = s_rod_leg1 * (c_cross_leg1 * t726 - s_cross_leg1 * t728);
+        let t736 = c_cross_leg1 * t728 + s_cross_leg1 * t726;
+        let t737 = c_rod_leg1 * t736;
+        let t739 = t717 * (t350 - rate_dot_rod_leg1) + t720 * (t615 + t234) + t216 * t380
+            - t362 * t731 + t347 * t737;
+        let t747 = 0.24 * rate_dot_arm_leg2 - t339;
+        let t749 = t342 - t427;
+        let t752 = minus_s_rod_leg2 * (c_cross_leg2 * t747 - s_cross_leg2 * t749);
+        let t756 = c_cross_leg2 * t749 + s_cross_leg2 * t747;
+        let t757 = c_rod_leg2 * t756;
+        let t760 = 0.8928571428571429 * t29;
+        let t763 = t99 * t760;
+        let t772 = t760 * (minus_rate_dot_rod_leg2 - t451) - t763 * (t631 + t265)
+            + t249 * t440 + t458 * t752 - t462 * t757;
+        let t776 = t343 + t500;
+        let t779 = t340 + 0.24 * rate_dot_arm_leg3;
+        let t782 = s_rod_leg3 * (s_cross_leg3 * t776 + c_cross_leg3 * t779);
+        let t786 = s_cross_leg3 * t779 - c_cross_leg3 * t776;
+        let t787 = c_rod_leg3 * t786;
+        let t793 = 0.8928571428571429 * t60;
+        let t796 = t88 * t793;
+        let t805 = t793 * (t524 - rate_dot_rod_leg3) + t796 * (t647 + t312) - t298 * t513
+            - t542 * t782 + t546 * t787;
         Ok([
             [
-                t193 * acceleration[0] - t198 * acceleration[1] + t204 * t205, rate_dot_arm_leg1,
-                0.0, 0.0, -t370, 0.0, 0.0, -t373, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t382 - t394 * t418,
-                t456 * t482 + t491, t532 * t558 - t567, t394 * t597 - t379 * t602,
-                t456 * t617 + t488 * t622, t532 * t637 + t564 * t642, t394 * t657 + t379 * t411,
-                t456 * t673 - t488 * t475, t532 * t689 + t564 * t551, t394 * t701 - t382,
-                t456 * t710 - t491, t532 * t719 + t567, t394 * t726 + t379 * t728,
-                t488 * t737 - t456 * t739, t532 * t748 + t564 * t750, -(t379 * rate_dot_rod_leg1),
-                -(t488 * minus_rate_dot_rod_leg2), t564 * rate_dot_rod_leg3, t787 + t379 * t791,
-                t456 * t807 - t488 * t812, -(t532 * t839 + t564 * t844),
-                t236 * t255 - (1.594387755102041 * (t138 * t409) + t411 * t772)
-                    + t394 * t790,
-                t456 * t811,
-                t532 * t843,
+                t173 * acceleration[0] - t178 * acceleration[1] + t184 * t185, rate_dot_arm_leg1,
+                0.0, 0.0, -t338, 0.0, 0.0, -t341, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t351 - t362 * t382,
+                t419 * t442 + t452, t492 * t515 - t525, t362 * t556 - t347 * t561,
+                t448 * t582 - t419 * t577, t492 * t598 + t521 * t603, t362 * t618 + t347 * t378,
+                t419 * t634 - t448 * t438, t492 * t650 + t521 * t511, t362 * t554 - t351,
+                t419 * t575 - t452, t492 * t596 + t525, t362 * t678 + t347 * t377,
+                t448 * t437 - t419 * t689, t492 * t698 + t521 * t510, -(t347 * rate_dot_rod_leg1),
+                -(t448 * minus_rate_dot_rod_leg2), t521 * rate_dot_rod_leg3, t739,
+                t419 * t752 - t448 * t757, -(t492 * t782 + t521 * t787),
+                t216 * t232 - (t377 * t717 + t378 * t720) + t362 * t736, t419 * t756, t492 * t786,
             ],
             [
-                t208 * acceleration[0] - t210 * acceleration[1] + t213 * t205, 0.0,
-                rate_dot_arm_leg2, 0.0, 0.0, -t371, 0.0, 0.0, -t374, 0.0, 0.0, rate_arm_leg2, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t422 - t427 * t418,
-                t497 * t482 + t502, t573 * t558 - t578, t427 * t597 - t421 * t602,
-                t497 * t617 + t501 * t622, t573 * t637 + t577 * t642, t427 * t657 + t421 * t411,
-                t497 * t673 - t501 * t475, t573 * t689 + t577 * t551, t427 * t701 - t422,
-                t497 * t710 - t502, t573 * t719 + t578, t427 * t726 + t421 * t728,
-                t501 * t737 - t497 * t739, t573 * t748 + t577 * t750, -(t421 * rate_dot_rod_leg1),
-                -(t501 * minus_rate_dot_rod_leg2), t577 * rate_dot_rod_leg3,
-                t421 * t791 - t427 * t785, t826 - t501 * t812, -(t573 * t839 + t577 * t844),
-                t427 * t790,
-                1.594387755102041 * (t23 * t473) + t475 * t819 + t275 * t306
-                    + t497 * t811,
-                t573 * t843,
+                t188 * acceleration[0] - t190 * acceleration[1] + t193 * t185, 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, -t339, 0.0, 0.0, -t342, 0.0, 0.0, rate_arm_leg2, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t386 - t391 * t382,
+                t458 * t442 + t463, t531 * t515 - t536, t391 * t556 - t385 * t561,
+                t462 * t582 - t458 * t577, t531 * t598 + t535 * t603, t391 * t618 + t385 * t378,
+                t458 * t634 - t462 * t438, t531 * t650 + t535 * t511, t391 * t554 - t386,
+                t458 * t575 - t463, t531 * t596 + t536, t391 * t678 + t385 * t377,
+                t462 * t437 - t458 * t689, t531 * t698 + t535 * t510, -(t385 * rate_dot_rod_leg1),
+                -(t462 * minus_rate_dot_rod_leg2), t535 * rate_dot_rod_leg3,
+                t385 * t737 - t391 * t731, t772, -(t531 * t782 + t535 * t787), t391 * t736,
+                t437 * t760 + t438 * t763 + t249 * t280 + t458 * t756, t531 * t786,
             ],
             [
-                t219 * acceleration[1] - t224 * acceleration[0] - t230 * t205, 0.0, 0.0,
-                rate_dot_arm_leg3, 0.0, 0.0, t372, 0.0, 0.0, t375, 0.0, 0.0, rate_arm_leg3, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, -(t434 * t418 + t437),
-                t507 - t512 * t482, t584 * t558 + t589, t434 * t597 + t436 * t602,
-                t506 * t622 - t512 * t617, t584 * t637 - t588 * t642, t434 * t657 - t436 * t411,
-                -(t512 * t673 + t506 * t475), t584 * t689 - t588 * t551, t434 * t701 + t437,
-                -(t512 * t710 + t507), t584 * t719 - t589, t434 * t726 - t436 * t728,
-                t512 * t739 + t506 * t737, t584 * t748 - t588 * t750, t436 * rate_dot_rod_leg1,
-                -(t506 * minus_rate_dot_rod_leg2), -(t588 * rate_dot_rod_leg3),
-                -(t434 * t785 + t436 * t791), -(t512 * t807 + t506 * t812), t861 + t588 * t844,
-                t434 * t790, -(t512 * t811),
-                1.594387755102041 * (t67 * t549) + t551 * t854 + t327 * t356
-                    + t584 * t843,
+                t199 * acceleration[1] - t204 * acceleration[0] - t210 * t185, 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, t340, 0.0, 0.0, t343, 0.0, 0.0, rate_arm_leg3, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, -(t398 * t382 + t401),
+                t468 - t473 * t442, t542 * t515 + t547, t398 * t556 + t400 * t561,
+                t467 * t582 + t473 * t577, t542 * t598 - t546 * t603, t398 * t618 - t400 * t378,
+                -(t473 * t634 + t467 * t438), t542 * t650 - t546 * t511, t398 * t554 + t401,
+                -(t473 * t575 + t468), t542 * t596 - t547, t398 * t678 - t400 * t377,
+                t473 * t689 + t467 * t437, t542 * t698 - t546 * t510, t400 * rate_dot_rod_leg1,
+                -(t467 * minus_rate_dot_rod_leg2), -(t546 * rate_dot_rod_leg3),
+                -(t398 * t731 + t400 * t737), -(t473 * t752 + t467 * t757), t805, t398 * t736,
+                -(t473 * t756), t510 * t793 + t511 * t796 + t298 * t327 + t542 * t786,
             ],
         ])
     }
@@ -6366,7 +6119,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 773 operations (253 additions, 513 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 704 intermediates.
+    /// 729 operations (238 additions, 484 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 660 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6447,274 +6200,249 @@ impl Delta {
         let t124 = (garm_vx_leg1 * garm_vy_leg2 + garm_vy_leg1 * minus_garm_vx_leg2)
             * t83;
         let t130 = 0.24 * c_cross_leg1;
-        let t133 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
-        let rate_arm_leg1 = t56 * (t133 + t62 * twist[1]);
+        let t134 = t62 * twist[1];
+        let rate_arm_leg1 = t56
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t134);
         let t137 = rate_arm_leg1 * rate_arm_leg1;
         let grod_vy_leg1 = 1.7857142857142858 * t61;
-        let t141 = c_cross_leg1 * t55;
-        let t143 = t130 * garm_vy_leg1;
-        let t149 = t141 * t133 + t143 * twist[1] + s_armcross_leg1 * twist[0]
+        let t145 = t130 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t149;
-        let t151 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t145;
+        let t147 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t153 = rate_rod_leg1 * rate_rod_leg1;
-        let t154 = t151 + t153;
+        let t149 = rate_rod_leg1 * rate_rod_leg1;
+        let t155 = acceleration[1] + t134 * rate_rod_leg1;
         let t157 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t130 * t137 + 0.56 * c_rod_leg1 * t154;
-        let t158 = 0.56 * s_rod_leg1;
-        let t159 = t158 * minus_rate_cross_leg1;
-        let t163 = acceleration[1] - (minus_rate_cross_leg1 * t159 - t158 * t154);
-        let rate_dot_arm_leg1 = t56 * (t157 + t62 * t163);
-        let t172 = 0.24 * c_cross_leg2;
-        let t177 = t34 * twist[1] - t69 * twist[0] - s_armcross_leg2 * twist[2];
-        let t178 = 0.8660254037844387 * twist[0];
-        let t179 = 0.5 * twist[1];
-        let t180 = t178 + t179;
-        let rate_arm_leg2 = t11 * (t177 - t38 * t180);
-        let t184 = rate_arm_leg2 * rate_arm_leg2;
-        let t187 = 1.7857142857142858 * t37;
-        let minus_rate_rod_leg2 = t187 * t180;
-        let t189 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t190 = 0.5 * s_armcross_leg2;
-        let t192 = 0.8660254037844387 * s_armcross_leg2;
-        let t197 = c_cross_leg2 * t10;
-        let t201 = t172 * (t11 * t38);
-        let t203 = t190 * twist[0] - t192 * twist[1] - c_armcross_leg2 * twist[2]
-            - t197 * t177 + t201 * t180;
-        let rate_cross_leg2 = t187 * t203;
-        let t205 = rate_cross_leg2 * rate_cross_leg2;
-        let t206 = t189 + t205;
-        let t209 = t34 * acceleration[1] - t69 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t172 * t184 + 0.56 * c_rod_leg2 * t206;
-        let t210 = 0.8660254037844387 * acceleration[0];
-        let t211 = 0.5 * acceleration[1];
-        let t212 = t210 + t211;
-        let t213 = 0.56 * s_rod_leg2;
-        let t214 = t213 * rate_cross_leg2;
-        let t218 = t212 + rate_cross_leg2 * t214 - t213 * t206;
-        let rate_dot_arm_leg2 = t11 * (t209 - t38 * t218);
-        let t222 = 0.24 * c_cross_leg3;
-        let t223 = t178 - t179;
-        let t229 = t65 * twist[0] + t25 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t16 * (t29 * t223 - t229);
-        let t232 = rate_arm_leg3 * rate_arm_leg3;
-        let t235 = 1.7857142857142858 * t28;
-        let rate_rod_leg3 = t235 * t223;
-        let t237 = rate_rod_leg3 * rate_rod_leg3;
-        let t238 = c_cross_leg3 * t15;
-        let t240 = 0.5 * s_armcross_leg3;
-        let t242 = 0.8660254037844387 * s_armcross_leg3;
-        let t249 = t222 * (t16 * t29);
-        let t251 = t238 * t229 + t240 * twist[0] + t242 * twist[1]
-            - c_armcross_leg3 * twist[2] - t249 * t223;
-        let rate_cross_leg3 = t235 * t251;
-        let t253 = rate_cross_leg3 * rate_cross_leg3;
-        let t254 = t237 + t253;
-        let t262 = t222 * t232 + 0.56 * c_rod_leg3 * t254
+            + t130 * t137 + 0.56 * c_rod_leg1 * (t147 + t149) + t62 * t155;
+        let rate_dot_arm_leg1 = t56 * t157;
+        let t164 = 0.24 * c_cross_leg2;
+        let t169 = t34 * twist[1] - t69 * twist[0] - s_armcross_leg2 * twist[2];
+        let t170 = 0.8660254037844387 * twist[0];
+        let t171 = 0.5 * twist[1];
+        let t172 = t170 + t171;
+        let t173 = t38 * t172;
+        let rate_arm_leg2 = t11 * (t169 - t173);
+        let t176 = rate_arm_leg2 * rate_arm_leg2;
+        let t179 = 1.7857142857142858 * t37;
+        let minus_rate_rod_leg2 = t179 * t172;
+        let t181 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t182 = 0.5 * s_armcross_leg2;
+        let t184 = 0.8660254037844387 * s_armcross_leg2;
+        let t189 = c_cross_leg2 * t10;
+        let t192 = t38 * t189;
+        let t194 = t182 * twist[0] - t184 * twist[1] - c_armcross_leg2 * twist[2]
+            - t189 * t169 + t192 * t172;
+        let rate_cross_leg2 = t179 * t194;
+        let t196 = rate_cross_leg2 * rate_cross_leg2;
+        let t200 = t34 * acceleration[1] - t69 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t164 * t176
+            + 0.56 * c_rod_leg2 * (t181 + t196);
+        let t201 = 0.8660254037844387 * acceleration[0];
+        let t202 = 0.5 * acceleration[1];
+        let t203 = t201 + t202;
+        let t205 = t203 - t173 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t11 * (t200 - t38 * t205);
+        let t209 = 0.24 * c_cross_leg3;
+        let t210 = t170 - t171;
+        let t211 = t29 * t210;
+        let t216 = t65 * twist[0] + t25 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t16 * (t211 - t216);
+        let t219 = rate_arm_leg3 * rate_arm_leg3;
+        let t222 = 1.7857142857142858 * t28;
+        let rate_rod_leg3 = t222 * t210;
+        let t224 = rate_rod_leg3 * rate_rod_leg3;
+        let t225 = c_cross_leg3 * t15;
+        let t227 = 0.5 * s_armcross_leg3;
+        let t229 = 0.8660254037844387 * s_armcross_leg3;
+        let t235 = t29 * t225;
+        let t237 = t225 * t216 + t227 * twist[0] + t229 * twist[1]
+            - c_armcross_leg3 * twist[2] - t235 * t210;
+        let rate_cross_leg3 = t222 * t237;
+        let t239 = rate_cross_leg3 * rate_cross_leg3;
+        let t248 = t209 * t219 + 0.56 * c_rod_leg3 * (t224 + t239)
             - (t65 * acceleration[0] + t25 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t263 = t210 - t211;
-        let t264 = 0.56 * s_rod_leg3;
-        let t265 = t264 * rate_cross_leg3;
-        let t269 = t263 - (rate_cross_leg3 * t265 - t264 * t254);
-        let rate_dot_arm_leg3 = t16 * (t262 + t29 * t269);
-        let t273 = 9.81 * c_arm_leg1;
-        let t274 = 9.81 * c_arm_leg2;
-        let t275 = 9.81 * c_arm_leg3;
-        let t276 = 9.81 * s_arm_leg1;
-        let t277 = 9.81 * s_arm_leg2;
-        let t278 = 9.81 * s_arm_leg3;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t141 + s_armcross_leg1);
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t143;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t141);
-        let t293 = minus_gcross_vx_leg1 * t84 + minus_gcross_vy_leg1 * t86
-            + minus_gcross_vz_leg1 * t89;
-        let t300 = 0.24 * s_cross_leg1;
-        let t303 = t158 * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t307 = t141 * t157 + t143 * t163 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t300 * t137 + t303 + t303;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t307;
-        let t309 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t311 = rate_rod_leg1 * (1.7857142857142858 * t149);
-        let t312 = t309 + t311;
-        let t315 = c_rod_leg1 * (1.7857142857142858 * t303);
-        let t316 = s_rod_leg1 * t312 + t315;
-        let t318 = grod_vy_leg1 * t86;
-        let t320 = 3.188775510204082 * (t149 * t159);
-        let t321 = t318 * t320;
-        let t323 = grod_vy_leg1 * t101;
-        let t324 = t323 * t320;
-        let t329 = minus_gcross_vx_leg1 * t96 + minus_gcross_vy_leg1 * t101
-            + minus_gcross_vz_leg1 * t107;
-        let t332 = grod_vy_leg1 * t118;
-        let t333 = t332 * t320;
-        let t338 = minus_gcross_vx_leg1 * t113 + minus_gcross_vy_leg1 * t118
-            + minus_gcross_vz_leg1 * t124;
-        let gcross_vx_leg2 = t187 * (t69 * t197 + t190 + 0.8660254037844387 * t201);
-        let gcross_vy_leg2 = t187 * (0.5 * t201 - (t34 * t197 + t192));
-        let gcross_vz_leg2 = t187 * (s_armcross_leg2 * t197 - c_armcross_leg2);
-        let t358 = gcross_vx_leg2 * t84 + gcross_vy_leg2 * t86 + gcross_vz_leg2 * t89;
-        let t364 = 0.24 * s_cross_leg2;
-        let t367 = t213 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t372 = t190 * acceleration[0] - t192 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t364 * t184 + t367 + t367)
-            - t197 * t209;
-        let t374 = t372 + t201 * t218;
-        let rate_dot_cross_leg2 = t187 * t374;
-        let t376 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t378 = minus_rate_rod_leg2 * (1.7857142857142858 * t203);
-        let t379 = t376 - t378;
-        let t382 = c_rod_leg2 * (1.7857142857142858 * t367);
-        let t383 = s_rod_leg2 * t379 - t382;
+        let t249 = t201 - t202;
+        let t251 = t249 + t211 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t16 * (t248 + t29 * t251);
+        let t255 = 9.81 * c_arm_leg1;
+        let t256 = 9.81 * c_arm_leg2;
+        let t257 = 9.81 * c_arm_leg3;
+        let t258 = 9.81 * s_arm_leg1;
+        let t259 = 9.81 * s_arm_leg2;
+        let t260 = 9.81 * s_arm_leg3;
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t55 * c_arm_leg1);
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t130 * garm_vy_leg1);
+        let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t55 * s_arm_leg1);
+        let t274 = minus_gcross_vx_leg1 * t84 + minus_gcross_vy_leg1 * t86
+            - minus_minus_gcross_vz_leg1 * t89;
+        let t276 = rate_rod_leg1 * (1.7857142857142858 * t145);
+        let t277 = 0.24 * rate_dot_arm_leg1;
+        let t282 = 0.24 * s_cross_leg1;
+        let t284 = t134 * minus_rate_cross_leg1;
+        let t288 = c_cross_leg1 * t277 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t282 * t137 + t284 + t284;
+        let t289 = 1.7857142857142858 * t288;
+        let t290 = t62 * t289;
+        let t292 = t276 + t290 + t276;
+        let t293 = s_rod_leg1 * t292;
+        let t295 = grod_vy_leg1 * t86;
+        let t296 = t62 * t145;
+        let t298 = 3.188775510204082 * (t145 * t296);
+        let t299 = t295 * t298;
+        let t301 = grod_vy_leg1 * t101;
+        let t302 = t301 * t298;
+        let t307 = minus_gcross_vx_leg1 * t96 + minus_gcross_vy_leg1 * t101
+            - minus_minus_gcross_vz_leg1 * t107;
+        let t310 = grod_vy_leg1 * t118;
+        let t311 = t310 * t298;
+        let t316 = minus_gcross_vx_leg1 * t113 + minus_gcross_vy_leg1 * t118
+            - minus_minus_gcross_vz_leg1 * t124;
+        let gcross_vx_leg2 = t179 * (t69 * t189 + t182 + 0.8660254037844387 * t192);
+        let gcross_vy_leg2 = t179 * (0.5 * t192 - (t34 * t189 + t184));
+        let gcross_vz_leg2 = t179 * (t10 * s_arm_leg2);
+        let t335 = gcross_vx_leg2 * t84 + gcross_vy_leg2 * t86 + gcross_vz_leg2 * t89;
+        let t341 = 0.24 * s_cross_leg2;
+        let t343 = t173 * rate_cross_leg2;
+        let t348 = t182 * acceleration[0] - t184 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t341 * t176 + t343 + t343)
+            - t189 * t200;
+        let t350 = t348 + t192 * t205;
+        let t351 = 1.7857142857142858 * t350;
+        let t352 = t38 * t351;
+        let t354 = minus_rate_rod_leg2 * (1.7857142857142858 * t194);
+        let t356 = t352 - t354 - t354;
+        let t357 = s_rod_leg2 * t356;
         let minus_grod_vx_leg2 = 1.5464739353293548 * t37;
         let minus_grod_vy_leg2 = 0.8928571428571429 * t37;
-        let t389 = minus_grod_vx_leg2 * t84 + minus_grod_vy_leg2 * t86;
-        let t391 = 3.188775510204082 * (t203 * t214);
-        let t392 = t389 * t391;
-        let t398 = gcross_vx_leg2 * t96 + gcross_vy_leg2 * t101 + gcross_vz_leg2 * t107;
-        let t402 = minus_grod_vx_leg2 * t96 + minus_grod_vy_leg2 * t101;
-        let t403 = t402 * t391;
-        let t409 = gcross_vx_leg2 * t113 + gcross_vy_leg2 * t118 + gcross_vz_leg2 * t124;
-        let t413 = minus_grod_vx_leg2 * t113 + minus_grod_vy_leg2 * t118;
-        let t414 = t413 * t391;
-        let gcross_vx_leg3 = t235 * (t65 * t238 + t240 - 0.8660254037844387 * t249);
-        let gcross_vy_leg3 = t235 * (t25 * t238 + t242 + 0.5 * t249);
-        let gcross_vz_leg3 = t235 * (s_armcross_leg3 * t238 - c_armcross_leg3);
-        let t433 = gcross_vx_leg3 * t84 + gcross_vy_leg3 * t86 + gcross_vz_leg3 * t89;
-        let t439 = 0.24 * s_cross_leg3;
-        let t442 = t264 * (rate_cross_leg3 * rate_rod_leg3);
-        let t447 = t240 * acceleration[0] + t242 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t439 * t232 - t442 - t442)
-            - t238 * t262;
-        let t449 = t447 - t249 * t269;
-        let rate_dot_cross_leg3 = t235 * t449;
-        let t451 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t453 = rate_rod_leg3 * (1.7857142857142858 * t251);
-        let t454 = t451 + t453;
-        let t457 = c_rod_leg3 * (1.7857142857142858 * t442);
-        let t458 = s_rod_leg3 * t454 + t457;
+        let t363 = minus_grod_vx_leg2 * t84 + minus_grod_vy_leg2 * t86;
+        let t364 = t38 * t194;
+        let t366 = 3.188775510204082 * (t194 * t364);
+        let t367 = t363 * t366;
+        let t373 = gcross_vx_leg2 * t96 + gcross_vy_leg2 * t101 + gcross_vz_leg2 * t107;
+        let t377 = minus_grod_vx_leg2 * t96 + minus_grod_vy_leg2 * t101;
+        let t378 = t377 * t366;
+        let t384 = gcross_vx_leg2 * t113 + gcross_vy_leg2 * t118 + gcross_vz_leg2 * t124;
+        let t388 = minus_grod_vx_leg2 * t113 + minus_grod_vy_leg2 * t118;
+        let t389 = t388 * t366;
+        let gcross_vx_leg3 = t222 * (t65 * t225 + t227 - 0.8660254037844387 * t235);
+        let gcross_vy_leg3 = t222 * (t25 * t225 + t229 + 0.5 * t235);
+        let gcross_vz_leg3 = t222 * (t15 * s_arm_leg3);
+        let t407 = gcross_vx_leg3 * t84 + gcross_vy_leg3 * t86 + gcross_vz_leg3 * t89;
+        let t409 = rate_rod_leg3 * (1.7857142857142858 * t237);
+        let t415 = 0.24 * s_cross_leg3;
+        let t417 = t211 * rate_cross_leg3;
+        let t422 = t227 * acceleration[0] + t229 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t415 * t219 - t417 - t417)
+            - t225 * t248;
+        let t424 = t422 - t235 * t251;
+        let t425 = 1.7857142857142858 * t424;
+        let t426 = t29 * t425;
+        let t428 = t409 + t426 + t409;
+        let t429 = s_rod_leg3 * t428;
         let grod_vx_leg3 = 1.5464739353293548 * t28;
         let minus_grod_vy_leg3 = 0.8928571428571429 * t28;
-        let t464 = grod_vx_leg3 * t84 - minus_grod_vy_leg3 * t86;
-        let t466 = 3.188775510204082 * (t251 * t265);
-        let t467 = t464 * t466;
-        let t473 = gcross_vx_leg3 * t96 + gcross_vy_leg3 * t101 + gcross_vz_leg3 * t107;
-        let t477 = minus_grod_vy_leg3 * t101 - grod_vx_leg3 * t96;
-        let t478 = t477 * t466;
-        let t484 = gcross_vx_leg3 * t113 + gcross_vy_leg3 * t118 + gcross_vz_leg3 * t124;
-        let t488 = minus_grod_vy_leg3 * t118 - grod_vx_leg3 * t113;
-        let t489 = t488 * t466;
-        let t491 = t159 * t159;
-        let t494 = 3.188775510204082 * (t491 - t149 * t149);
-        let t496 = t303 - t307;
-        let t500 = t311 + t312;
-        let t502 = s_rod_leg1 * (1.7857142857142858 * (t303 + t496)) - c_rod_leg1 * t500;
-        let t511 = t374 + t367;
-        let t515 = t379 - t378;
-        let t517 = s_rod_leg2 * (1.7857142857142858 * (t367 + t511)) + c_rod_leg2 * t515;
-        let t519 = t214 * t214;
-        let t522 = 3.188775510204082 * (t519 - t203 * t203);
-        let t531 = t453 + t454;
-        let t533 = t449 - t442;
-        let t537 = c_rod_leg3 * t531 - s_rod_leg3 * (1.7857142857142858 * (t442 - t533));
-        let t539 = t265 * t265;
-        let t542 = 3.188775510204082 * (t539 - t251 * t251);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t163;
-        let t554 = 3.188775510204082 * t491;
-        let t557 = s_rod_leg1 * (t320 + rate_dot_rod_leg1) + c_rod_leg1 * (t153 - t554);
-        let minus_rate_dot_rod_leg2 = t187 * t218;
-        let t570 = 3.188775510204082 * t519;
-        let t573 = s_rod_leg2 * (t391 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t189 - t570);
-        let rate_dot_rod_leg3 = t235 * t269;
-        let t586 = 3.188775510204082 * t539;
-        let t589 = s_rod_leg3 * (t466 + rate_dot_rod_leg3) + c_rod_leg3 * (t237 - t586);
-        let t601 = t315 + c_rod_leg1 * (1.7857142857142858 * t496);
-        let t610 = t382 + c_rod_leg2 * (1.7857142857142858 * t511);
-        let t619 = c_rod_leg3 * (1.7857142857142858 * t533) - t457;
-        let t626 = 1.7857142857142858 * acceleration[1];
-        let t628 = 1.7857142857142858 * t307;
-        let t637 = 1.7857142857142858 * t212;
-        let t639 = 1.7857142857142858 * t374;
-        let t648 = 1.7857142857142858 * t263;
-        let t650 = 1.7857142857142858 * t449;
-        let t668 = s_cross_leg1 * c_rod_leg1;
-        let t672 = t300 * s_rod_leg1;
-        let t679 = t276 + 0.24 * t137;
-        let t682 = 0.24 * rate_dot_arm_leg1 - t273;
-        let t685 = s_rod_leg1 * (s_cross_leg1 * t679 + c_cross_leg1 * t682);
-        let t687 = 0.24 * t668 * (t320 - rate_dot_rod_leg1) + t672 * (t554 + t153)
-            + t130 * t500 + t293 * t685;
-        let t690 = s_cross_leg1 * t682 - c_cross_leg1 * t679;
-        let t691 = c_rod_leg1 * t690;
-        let t701 = 0.24 * rate_dot_arm_leg2 - t274;
-        let t704 = t277 + 0.24 * t184;
-        let t706 = s_cross_leg2 * t701 - c_cross_leg2 * t704;
-        let t707 = c_rod_leg2 * t706;
-        let t712 = s_rod_leg2 * (s_cross_leg2 * t704 + c_cross_leg2 * t701);
-        let t715 = s_cross_leg2 * c_rod_leg2;
-        let t719 = t364 * s_rod_leg2;
-        let t726 = 0.24 * t715 * (t391 + minus_rate_dot_rod_leg2) + t719 * (t570 + t189)
-            - t172 * t515 + t398 * t712;
-        let t733 = t278 + 0.24 * t232;
-        let t736 = 0.24 * rate_dot_arm_leg3 - t275;
-        let t739 = s_rod_leg3 * (s_cross_leg3 * t733 + c_cross_leg3 * t736);
-        let t743 = s_cross_leg3 * t736 - c_cross_leg3 * t733;
-        let t744 = c_rod_leg3 * t743;
-        let t750 = s_cross_leg3 * c_rod_leg3;
-        let t754 = t439 * s_rod_leg3;
-        let t761 = 0.24 * t750 * (t466 - rate_dot_rod_leg3) + t754 * (t586 + t237)
-            - t222 * t531 + t484 * t739;
+        let t435 = grod_vx_leg3 * t84 - minus_grod_vy_leg3 * t86;
+        let t436 = t29 * t237;
+        let t438 = 3.188775510204082 * (t237 * t436);
+        let t439 = t435 * t438;
+        let t445 = gcross_vx_leg3 * t96 + gcross_vy_leg3 * t101 + gcross_vz_leg3 * t107;
+        let t449 = minus_grod_vy_leg3 * t101 - grod_vx_leg3 * t96;
+        let t450 = t449 * t438;
+        let t456 = gcross_vx_leg3 * t113 + gcross_vy_leg3 * t118 + gcross_vz_leg3 * t124;
+        let t460 = minus_grod_vy_leg3 * t118 - grod_vx_leg3 * t113;
+        let t461 = t460 * t438;
+        let t463 = t296 * t296;
+        let t466 = 3.188775510204082 * (t463 - t145 * t145);
+        let t472 = s_rod_leg1 * t276 + c_rod_leg1 * (1.7857142857142858 * (t284 - t288));
+        let t475 = t62 * t472 - c_rod_leg1 * t292;
+        let t488 = s_rod_leg2 * t354 + c_rod_leg2 * (1.7857142857142858 * (t350 + t343));
+        let t491 = t38 * t488 + c_rod_leg2 * t356;
+        let t493 = t364 * t364;
+        let t496 = 3.188775510204082 * (t493 - t194 * t194);
+        let t510 = c_rod_leg3 * (1.7857142857142858 * (t424 - t417)) - s_rod_leg3 * t409;
+        let t512 = c_rod_leg3 * t428 + t29 * t510;
+        let t514 = t436 * t436;
+        let t517 = 3.188775510204082 * (t514 - t237 * t237);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t155;
+        let t529 = 3.188775510204082 * t463;
+        let t532 = s_rod_leg1 * (t298 + rate_dot_rod_leg1) + c_rod_leg1 * (t149 - t529);
+        let minus_rate_dot_rod_leg2 = t179 * t205;
+        let t545 = 3.188775510204082 * t493;
+        let t548 = s_rod_leg2 * (t366 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t181 - t545);
+        let rate_dot_rod_leg3 = t222 * t251;
+        let t561 = 3.188775510204082 * t514;
+        let t564 = s_rod_leg3 * (t438 + rate_dot_rod_leg3) + c_rod_leg3 * (t224 - t561);
+        let t592 = 1.7857142857142858 * acceleration[1];
+        let t602 = 1.7857142857142858 * t203;
+        let t612 = 1.7857142857142858 * t249;
+        let t631 = c_rod_leg1 * t282;
+        let t634 = t282 * s_rod_leg1;
+        let t641 = t258 + 0.24 * t137;
+        let t643 = t277 - t255;
+        let t646 = s_rod_leg1 * (s_cross_leg1 * t641 + c_cross_leg1 * t643);
+        let t651 = s_cross_leg1 * t643 - c_cross_leg1 * t641;
+        let t652 = c_rod_leg1 * t651;
+        let t654 = t631 * (t298 - rate_dot_rod_leg1) + t634 * (t529 + t149) + t130 * t292
+            + t274 * t646 - t295 * t652;
+        let t662 = 0.24 * rate_dot_arm_leg2 - t256;
+        let t665 = t259 + 0.24 * t176;
+        let t667 = s_cross_leg2 * t662 - c_cross_leg2 * t665;
+        let t668 = c_rod_leg2 * t667;
+        let t673 = s_rod_leg2 * (s_cross_leg2 * t665 + c_cross_leg2 * t662);
+        let t676 = c_rod_leg2 * t341;
+        let t679 = t341 * s_rod_leg2;
+        let t688 = t676 * (t366 + minus_rate_dot_rod_leg2) + t679 * (t545 + t181)
+            - t164 * t356 + t373 * t673 - t377 * t668;
+        let t693 = t260 + 0.24 * t219;
+        let t696 = 0.24 * rate_dot_arm_leg3 - t257;
+        let t699 = s_rod_leg3 * (s_cross_leg3 * t693 + c_cross_leg3 * t696);
+        let t703 = s_cross_leg3 * t696 - c_cross_leg3 * t693;
+        let t704 = c_rod_leg3 * t703;
+        let t710 = c_rod_leg3 * t415;
+        let t713 = t415 * s_rod_leg3;
+        let t722 = t710 * (t438 - rate_dot_rod_leg3) + t713 * (t561 + t224) - t209 * t428
+            + t456 * t699 - t460 * t704;
         Ok([
             [
                 t84 * acceleration[0] + t86 * acceleration[1] + t89 * t90, rate_dot_arm_leg1, 0.0,
-                0.0, -t273, 0.0, 0.0, t276, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t293 * t316 - t321,
-                t358 * t383 + t392, t433 * t458 - t467, t318 * t494 - t293 * t502,
-                t358 * t517 - t389 * t522, t433 * t537 + t464 * t542, -(t293 * t557 + t318 * t309),
-                t358 * t573 - t389 * t376, t433 * t589 + t464 * t451, t321 - t293 * t601,
-                t358 * t610 - t392, t433 * t619 + t467, -(t293 * t626 + t318 * t628),
-                -(t358 * t637 + t389 * t639), t433 * t648 + t464 * t650, t318 * rate_dot_rod_leg1,
-                t389 * minus_rate_dot_rod_leg2, t464 * rate_dot_rod_leg3, t687 - t318 * t691,
-                t389 * t707 - t358 * t712, -(t433 * t739 + t464 * t744),
-                t130 * t151 - (0.42857142857142855 * (t668 * t307) + t309 * t672)
-                    - t293 * t690,
-                t358 * t706,
-                t433 * t743,
+                0.0, -t255, 0.0, 0.0, t258, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t274 * t293 - t299,
+                t335 * t357 + t367, t407 * t429 - t439, t295 * t466 - t274 * t475,
+                t335 * t491 - t363 * t496, t407 * t512 + t435 * t517, -(t274 * t532 + t295 * t290),
+                t335 * t548 - t363 * t352, t407 * t564 + t435 * t426, t299 - t274 * t472,
+                t335 * t488 - t367, t407 * t510 + t439, -(t274 * t592 + t295 * t289),
+                -(t335 * t602 + t363 * t351), t407 * t612 + t435 * t425, t295 * rate_dot_rod_leg1,
+                t363 * minus_rate_dot_rod_leg2, t435 * rate_dot_rod_leg3, t654,
+                t363 * t668 - t335 * t673, -(t407 * t699 + t435 * t704),
+                t130 * t147 - (t289 * t631 + t290 * t634) - t274 * t651, t335 * t667, t407 * t703,
             ],
             [
                 -(t96 * acceleration[0] + t101 * acceleration[1] + t107 * t90), 0.0,
-                rate_dot_arm_leg2, 0.0, 0.0, -t274, 0.0, 0.0, t277, 0.0, 0.0, rate_arm_leg2, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t324 - t329 * t316,
-                -(t398 * t383 + t403), -(t473 * t458 + t478), t329 * t502 - t323 * t494,
-                t402 * t522 - t398 * t517, t477 * t542 - t473 * t537, t329 * t557 + t323 * t309,
-                t402 * t376 - t398 * t573, t477 * t451 - t473 * t589, t329 * t601 - t324,
-                t403 - t398 * t610, t478 - t473 * t619, t329 * t626 + t323 * t628,
-                t398 * t637 + t402 * t639, t477 * t650 - t473 * t648, -(t323 * rate_dot_rod_leg1),
-                -(t402 * minus_rate_dot_rod_leg2), t477 * rate_dot_rod_leg3,
-                t323 * t691 - t329 * t685, t726 - t402 * t707, t473 * t739 - t477 * t744,
-                t329 * t690,
-                0.42857142857142855 * (t715 * t374) + t376 * t719 + t172 * t205
-                    - t398 * t706,
-                -(t473 * t743),
+                rate_dot_arm_leg2, 0.0, 0.0, -t256, 0.0, 0.0, t259, 0.0, 0.0, rate_arm_leg2, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t302 - t307 * t293,
+                -(t373 * t357 + t378), -(t445 * t429 + t450), t307 * t475 - t301 * t466,
+                t377 * t496 - t373 * t491, t449 * t517 - t445 * t512, t307 * t532 + t301 * t290,
+                t377 * t352 - t373 * t548, t449 * t426 - t445 * t564, t307 * t472 - t302,
+                t378 - t373 * t488, t450 - t445 * t510, t307 * t592 + t301 * t289,
+                t373 * t602 + t377 * t351, t449 * t425 - t445 * t612, -(t301 * rate_dot_rod_leg1),
+                -(t377 * minus_rate_dot_rod_leg2), t449 * rate_dot_rod_leg3,
+                t301 * t652 - t307 * t646, t688, t445 * t699 - t449 * t704, t307 * t651,
+                t351 * t676 + t352 * t679 + t164 * t196 - t373 * t667, -(t445 * t703),
             ],
             [
                 -(t113 * acceleration[0] + t118 * acceleration[1] + t124 * t90), 0.0, 0.0,
-                rate_dot_arm_leg3, 0.0, 0.0, -t275, 0.0, 0.0, t278, 0.0, 0.0, rate_arm_leg3, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, t333 - t338 * t316,
-                -(t409 * t383 + t414), -(t484 * t458 + t489), t338 * t502 - t332 * t494,
-                t413 * t522 - t409 * t517, t488 * t542 - t484 * t537, t338 * t557 + t332 * t309,
-                t413 * t376 - t409 * t573, t488 * t451 - t484 * t589, t338 * t601 - t333,
-                t414 - t409 * t610, t489 - t484 * t619, t338 * t626 + t332 * t628,
-                t409 * t637 + t413 * t639, t488 * t650 - t484 * t648, -(t332 * rate_dot_rod_leg1),
-                -(t413 * minus_rate_dot_rod_leg2), t488 * rate_dot_rod_leg3,
-                t332 * t691 - t338 * t685, t409 * t712 - t413 * t707, t761 - t488 * t744,
-                t338 * t690, -(t409 * t706),
-                0.42857142857142855 * (t750 * t449) + t451 * t754 + t222 * t253
-                    - t484 * t743,
+                rate_dot_arm_leg3, 0.0, 0.0, -t257, 0.0, 0.0, t260, 0.0, 0.0, rate_arm_leg3, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, t311 - t316 * t293,
+                -(t384 * t357 + t389), -(t456 * t429 + t461), t316 * t475 - t310 * t466,
+                t388 * t496 - t384 * t491, t460 * t517 - t456 * t512, t316 * t532 + t310 * t290,
+                t388 * t352 - t384 * t548, t460 * t426 - t456 * t564, t316 * t472 - t311,
+                t389 - t384 * t488, t461 - t456 * t510, t316 * t592 + t310 * t289,
+                t384 * t602 + t388 * t351, t460 * t425 - t456 * t612, -(t310 * rate_dot_rod_leg1),
+                -(t388 * minus_rate_dot_rod_leg2), t460 * rate_dot_rod_leg3,
+                t310 * t652 - t316 * t646, t384 * t673 - t388 * t668, t722, t316 * t651,
+                -(t384 * t667), t425 * t710 + t426 * t713 + t209 * t239 - t456 * t703,
             ],
         ])
     }
@@ -6729,7 +6457,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 983 operations (341 additions, 623 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 908 intermediates.
+    /// 915 operations (315 additions, 581 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 840 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6740,452 +6468,432 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t1 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t4 = pose[0] - 0.025 + 0.1;
-        let t5 = 0.5 * t4;
-        let t6 = 0.8660254037844387 * t1 - t5;
-        let t8 = pose[2] * pose[2];
-        let t10 = 0.2304 * (t6 * t6 + t8);
-        let t11 = 1.0 / t10;
-        let t12 = 0.48 * t6;
-        let t13 = t4 * t4;
-        let t16 = t13 + t1 * t1 + t8;
-        let t18 = t16 - 0.3136 + 0.0576;
-        let t20 = 0.48 * pose[2];
-        let t22 = t10 - t18 * t18;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
-        let t28 = 0.8660254037844387 * t4;
-        let t30 = t28 + 0.5 * t1;
-        let t31 = t30 * t30;
-        let t33 = 1.0 - 3.188775510204082 * t31;
-        ::overact::guard::reach(t33, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t33);
+        let t0 = pose[0] + 0.05;
+        let t1 = 0.025 + t0;
+        let t2 = t1 * t1;
+        let t4 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t7 = pose[2] * pose[2];
+        let t8 = t2 + t4 * t4 + t7;
+        let t11 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t13 = 0.8660254037844387 * t1 - 0.5 * t11;
+        let t14 = pose[1] + t13;
+        let t15 = t14 * t14;
+        let t17 = 0.2304 * (t8 - t15);
+        let t18 = 1.0 / t17;
+        let t20 = 0.5 * t1;
+        let t22 = 0.48 * (0.8660254037844387 * t4 - t20);
+        let t23 = t8 - 0.3136;
+        let t24 = t23 + 0.0576;
+        let t26 = 0.48 * pose[2];
+        let t28 = t17 - t24 * t24;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let c_arm_leg2 = t18 * (t22 * t24 - t26 * t29);
+        let t34 = 1.0 - 3.188775510204082 * t15;
+        ::overact::guard::reach(t34, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t34);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t35 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t23 / t35;
+        let t36 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t29 / t36;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
-        let c_cross_leg2 = (t16 - (0.0576 + t31) - 0.3136 * t33) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t18 * (t26 * t24 + t22 * t29);
+        let c_cross_leg2 = (t23 + -0.0576) / t36;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t50 = 1.0 / s_cross_leg2;
-        let t51 = 4.166666666666667 * t50;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t51;
-        let t54 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t56 = t5 + 0.8660254037844387 * t54;
-        let t59 = 0.2304 * (t56 * t56 + t8);
-        let t62 = t13 + t54 * t54 + t8;
-        let t64 = t62 - 0.3136 + 0.0576;
-        let t66 = t59 - t64 * t64;
-        ::overact::guard::reach(t66, "leg3")?;
-        let t67 = ::overact::math::sqrt(t66);
-        let t70 = t28 - 0.5 * t54;
-        let t71 = t70 * t70;
-        let t73 = 1.0 - 3.188775510204082 * t71;
-        ::overact::guard::reach(t73, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t73);
+        let t47 = 1.0 / s_cross_leg2;
+        let t48 = 4.166666666666667 * t47;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t48;
+        let t52 = t2 + t11 * t11 + t7;
+        let t53 = t13 * t13;
+        let t55 = 0.2304 * (t52 - t53);
+        let t56 = t52 - 0.3136;
+        let t57 = t56 + 0.0576;
+        let t59 = t55 - t57 * t57;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 1.0 - 3.188775510204082 * t53;
+        ::overact::guard::reach(t62, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t75 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t67 / t75;
+        let t64 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t60 / t64;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t77 = 1.0 / s_cross_leg3;
-        let t78 = 4.166666666666667 * t77;
-        let t79 = 1.0 / t59;
-        let t80 = 0.48 * t56;
-        let minus_c_arm_leg3 = t79 * (t80 * t64 + t20 * t67);
-        let c_cross_leg3 = (t62 - (0.0576 + t71) - 0.3136 * t73) / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t79 * (t80 * t67 - t20 * t64);
+        let t66 = 1.0 / s_cross_leg3;
+        let t67 = 4.166666666666667 * t66;
+        let t68 = 1.0 / t55;
+        let t71 = 0.48 * (t20 + 0.8660254037844387 * t11);
+        let minus_c_arm_leg3 = t68 * (t71 * t57 + t26 * t60);
+        let c_cross_leg3 = (-0.0576 + t56) / t64;
+        let s_arm_leg3 = t68 * (t71 * t60 - t26 * t57);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t98 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t99 = 1.0 / c_rod_leg3;
-        let t100 = 1.7857142857142858 * t99;
-        let t101 = t70 * t100;
-        let garm_vy_leg3 = t78 * (t98 - 0.5 * t101);
+        let t85 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t86 = 1.0 / c_rod_leg3;
+        let t87 = 1.7857142857142858 * t86;
+        let t88 = t13 * t87;
+        let garm_vy_leg3 = t67 * (t85 - 0.5 * t88);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t109 = 0.8660254037844387 * c_armcross_leg2;
-        let t110 = 1.0 / c_rod_leg2;
-        let t111 = 1.7857142857142858 * t110;
-        let t112 = t30 * t111;
-        let garm_vy_leg2 = t51 * (t109 + 0.5 * t112);
+        let t96 = 0.8660254037844387 * c_armcross_leg2;
+        let t97 = 1.0 / c_rod_leg2;
+        let t98 = 1.7857142857142858 * t97;
+        let t99 = t14 * t98;
+        let garm_vy_leg2 = t48 * (t96 + 0.5 * t99);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t78;
-        let t123 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t51 * (0.8660254037844387 * t112 - t123);
-        let t127 = pose[0] + 0.05 - 0.2;
-        let t128 = t127 * t127;
-        let t130 = 0.2304 * (t128 + t8);
-        let t131 = pose[1] * pose[1];
-        let t133 = t128 + t131 + t8;
-        let t135 = t133 - 0.3136 + 0.0576;
-        let t137 = t130 - t135 * t135;
-        ::overact::guard::reach(t137, "leg1")?;
-        let t138 = ::overact::math::sqrt(t137);
-        let t141 = 1.0 - 3.188775510204082 * t131;
-        ::overact::guard::reach(t141, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t141);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t67;
+        let t110 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t48 * (0.8660254037844387 * t99 - t110);
+        let t113 = t0 - 0.2;
+        let t115 = t113 * t113 + t7;
+        let t116 = 0.2304 * t115;
+        let t117 = pose[1] * pose[1];
+        let t119 = t115 + t117 - 0.3136;
+        let t120 = t119 + 0.0576;
+        let t122 = t116 - t120 * t120;
+        ::overact::guard::reach(t122, "leg1")?;
+        let t123 = ::overact::math::sqrt(t122);
+        let t125 = 1.0 - 3.188775510204082 * t117;
+        ::overact::guard::reach(t125, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t125);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t143 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t138 / t143;
+        let t127 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t123 / t127;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t145 = 1.0 / s_cross_leg1;
-        let t146 = 4.166666666666667 * t145;
+        let t129 = 1.0 / s_cross_leg1;
+        let t130 = 4.166666666666667 * t129;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t148 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t146 * t148;
-        let t151 = 1.0 / t130;
-        let t152 = 0.48 * t127;
-        let c_arm_leg1 = t151 * (t152 * t135 - t20 * t138);
-        let minus_s_arm_leg1 = t151 * (t20 * t135 + t152 * t138);
-        let c_cross_leg1 = (t133 - (0.0576 + t131) - 0.3136 * t141)
-            / (0.2688 * c_rod_leg1);
+        let t132 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t130 * t132;
+        let t135 = 1.0 / t116;
+        let t136 = 0.48 * t113;
+        let c_arm_leg1 = t135 * (t136 * t120 - t26 * t123);
+        let minus_s_arm_leg1 = t135 * (t26 * t120 + t136 * t123);
+        let c_cross_leg1 = (-0.0576 + t119) / t127;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t146;
-        let t172 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t130;
+        let t152 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t146;
-        let t179 = 0.5 * minus_c_armcross_leg3;
-        let garm_vx_leg3 = t78 * (t179 + 0.8660254037844387 * t101);
-        let t184 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t189 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t191 = garm_vx_leg2 * t172 - garm_vy_leg2 * t184 - minus_garm_vz_leg2 * t189;
-        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t191, 87.78853732233405, "kept actuators")?;
-        let t192 = 1.0 / t191;
-        let t193 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t192;
-        let t198 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let garm_vx_leg1 = c_armcross_leg1 * t130;
+        let t159 = 0.5 * minus_c_armcross_leg3;
+        let garm_vx_leg3 = t67 * (t159 + 0.8660254037844387 * t88);
+        let t164 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t169 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t171 = garm_vx_leg2 * t152 - garm_vy_leg2 * t164 - minus_garm_vz_leg2 * t169;
+        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
+        let t172 = 1.0 / t171;
+        let t173 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t172;
+        let t178 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t198, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t198, 14.869730172882841, "actuators")?;
-        let t199 = 1.0 / t198;
-        let t200 = 0.24 * c_cross_leg1;
-        let t201 = actuator_velocities[0] * actuator_velocities[0];
-        let t203 = c_cross_leg1 * t145;
-        let t208 = garm_vx_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t178, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t178, 14.869730172882841, "actuators")?;
+        let t179 = 1.0 / t178;
+        let t180 = 0.24 * c_cross_leg1;
+        let t181 = actuator_velocities[0] * actuator_velocities[0];
+        let t189 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t214 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let t195 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t215 = t214 * t199;
-        let t222 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t214 * t215;
-        ::overact::guard::platform(t222, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t222, 14.869730172882846, "actuators")?;
-        let t223 = 1.0 / t222;
-        let t230 = garm_vy_leg1 * actuator_velocities[0]
+        let t196 = t195 * t179;
+        let t203 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t195 * t196;
+        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
+        let t204 = 1.0 / t203;
+        let t211 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t208 * t215;
-        let t236 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vy_leg3 * actuator_velocities[2] - t189 * t196;
+        let t217 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t237 = t236 * t199;
-        let t244 = t214 * t237
+        let t218 = t217 * t179;
+        let t225 = t195 * t218
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t245 = t244 * t223;
-        let t254 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t226 = t225 * t204;
+        let t235 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t236 * t237 - t244 * t245;
-        ::overact::guard::platform(t254, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t254, 34.855350201355726, "actuators")?;
-        let t255 = 1.0 / t254;
-        let t265 = t255
-            * (t208 * t237
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t217 * t218 - t225 * t226;
+        ::overact::guard::platform(t235, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t235, 34.855350201355726, "actuators")?;
+        let t236 = 1.0 / t235;
+        let t246 = t236
+            * (t189 * t218
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t245 * t230);
-        let t267 = t223 * t230 - t245 * t265;
-        let t271 = t208 * t199 - t215 * t267 + t237 * t265;
-        let t276 = t200 * garm_vy_leg1;
-        let t282 = t203 * (c_armcross_leg1 * t271 - s_armcross_leg1 * t265) + t276 * t267
-            + s_armcross_leg1 * t271 + c_armcross_leg1 * t265;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t282;
-        let t284 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t267;
-        let t286 = rate_rod_leg1 * rate_rod_leg1;
-        let t287 = t284 + t286;
-        let t289 = t200 * t201 + t143 * t287;
-        let t290 = pose[1] * minus_rate_cross_leg1;
-        let t293 = minus_rate_cross_leg1 * t290 - pose[1] * t287;
-        let rate_dot_arm_leg1 = t146 * (t289 - t148 * t293);
-        let t297 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t299 = 0.24 * c_cross_leg2;
-        let t300 = actuator_velocities[1] * actuator_velocities[1];
-        let t302 = 0.8660254037844387 * t271;
-        let t303 = 0.5 * t267;
-        let t304 = t302 + t303;
-        let minus_rate_rod_leg2 = t111 * t304;
-        let t306 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t307 = 0.5 * s_armcross_leg2;
-        let t309 = 0.8660254037844387 * s_armcross_leg2;
-        let t314 = c_cross_leg2 * t50;
-        let t321 = t307 * t271 - t309 * t267 - c_armcross_leg2 * t265
-            - t314 * (t109 * t267 - t123 * t271 - s_armcross_leg2 * t265);
-        let t323 = t299 * (t51 * t112);
-        let t325 = t321 - t323 * t304;
-        let rate_cross_leg2 = t111 * t325;
-        let t327 = rate_cross_leg2 * rate_cross_leg2;
-        let t328 = t306 + t327;
-        let t330 = t299 * t300 + t35 * t328;
-        let t332 = t30 * rate_cross_leg2;
-        let t334 = t30 * t328 - rate_cross_leg2 * t332;
-        let rate_dot_arm_leg2 = t51 * (t330 + t112 * t334);
-        let t338 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t341 = 0.24 * c_cross_leg3;
-        let t342 = actuator_velocities[2] * actuator_velocities[2];
-        let t344 = t302 - t303;
-        let rate_rod_leg3 = t100 * t344;
-        let t346 = rate_rod_leg3 * rate_rod_leg3;
-        let t347 = 0.5 * s_armcross_leg3;
-        let t349 = 0.8660254037844387 * s_armcross_leg3;
-        let t354 = c_cross_leg3 * t77;
-        let t361 = t347 * t271 + t349 * t267 + minus_c_armcross_leg3 * t265
-            - t354 * (t179 * t271 + t98 * t267 - s_armcross_leg3 * t265);
-        let t363 = t341 * (t78 * t101);
-        let t365 = t361 - t363 * t344;
-        let rate_cross_leg3 = t100 * t365;
-        let t367 = rate_cross_leg3 * rate_cross_leg3;
-        let t368 = t346 + t367;
-        let t370 = t341 * t342 + t75 * t368;
-        let t371 = t70 * rate_cross_leg3;
-        let t374 = rate_cross_leg3 * t371 - t70 * t368;
-        let rate_dot_arm_leg3 = t78 * (t370 - t101 * t374);
-        let t378 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t380 = garm_vx_leg1 * t297 + garm_vx_leg2 * t338 + garm_vx_leg3 * t378;
-        let t388 = garm_vy_leg1 * t297 + garm_vy_leg2 * t338 + garm_vy_leg3 * t378
-            - t215 * t380;
-        let t399 = t255
-            * (t237 * t380
-                - (minus_garm_vz_leg1 * t297 + minus_garm_vz_leg2 * t338
-                    + minus_garm_vz_leg3 * t378) - t245 * t388);
-        let t401 = t223 * t388 - t245 * t399;
-        let t405 = t199 * t380 - t215 * t401 + t237 * t399;
-        let t410 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t192;
-        let t416 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t192;
-        let t417 = t399 + 9.81;
-        let t420 = t172 * t192;
-        let t422 = t184 * t192;
-        let t425 = t189 * t192;
-        let t431 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t192;
-        let t436 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t192;
-        let t442 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t192;
-        let t445 = 9.81 * c_arm_leg1;
-        let t446 = 9.81 * c_arm_leg2;
-        let t447 = 9.81 * minus_c_arm_leg3;
-        let t448 = 9.81 * minus_s_arm_leg1;
-        let t449 = 9.81 * minus_s_arm_leg2;
-        let t450 = 9.81 * s_arm_leg3;
-        let t454 = grod_vy_leg1 * t410;
-        let t456 = 3.188775510204082 * (t282 * t290);
-        let t457 = t454 * t456;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t276;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t203 + s_armcross_leg1);
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t203);
-        let t469 = minus_gcross_vy_leg1 * t410 - minus_gcross_vx_leg1 * t193
-            - minus_gcross_vz_leg1 * t416;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t226 * t211);
+        let t248 = t204 * t211 - t226 * t246;
+        let t252 = t189 * t179 - t196 * t248 + t218 * t246;
+        let t256 = t180 * actuator_velocities[0] + s_armcross_leg1 * t252
+            + c_armcross_leg1 * t246;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t256;
+        let t258 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t248;
+        let t260 = rate_rod_leg1 * rate_rod_leg1;
+        let t264 = pose[1] * t260;
+        let rate_dot_arm_leg1 = t130
+            * (t180 * t181 + 0.56 * c_rod_leg1 * (t258 + t260) + t132 * t264);
+        let t268 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t270 = 0.24 * c_cross_leg2;
+        let t271 = actuator_velocities[1] * actuator_velocities[1];
+        let t274 = 0.8660254037844387 * t252;
+        let t275 = 0.5 * t248;
+        let t276 = t274 + t275;
+        let minus_rate_rod_leg2 = t98 * t276;
+        let t278 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t279 = 0.5 * s_armcross_leg2;
+        let t281 = 0.8660254037844387 * s_armcross_leg2;
+        let t286 = c_cross_leg2 * t47;
+        let t293 = t279 * t252 - t281 * t248 - c_armcross_leg2 * t246
+            - t286 * (t96 * t248 - t110 * t252 - s_armcross_leg2 * t246);
+        let t294 = t99 * t286;
+        let t296 = t293 - t294 * t276;
+        let rate_cross_leg2 = t98 * t296;
+        let t298 = rate_cross_leg2 * rate_cross_leg2;
+        let t301 = t270 * t271 + 0.56 * c_rod_leg2 * (t278 + t298);
+        let t302 = t14 * t278;
+        let rate_dot_arm_leg2 = t48 * (t301 + t99 * t302);
+        let t306 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t309 = 0.24 * c_cross_leg3;
+        let t310 = actuator_velocities[2] * actuator_velocities[2];
+        let t313 = t274 - t275;
+        let rate_rod_leg3 = t87 * t313;
+        let t315 = rate_rod_leg3 * rate_rod_leg3;
+        let t316 = 0.5 * s_armcross_leg3;
+        let t318 = 0.8660254037844387 * s_armcross_leg3;
+        let t323 = c_cross_leg3 * t66;
+        let t330 = t316 * t252 + t318 * t248 + minus_c_armcross_leg3 * t246
+            - t323 * (t159 * t252 + t85 * t248 - s_armcross_leg3 * t246);
+        let t331 = t88 * t323;
+        let t333 = t330 - t331 * t313;
+        let rate_cross_leg3 = t87 * t333;
+        let t335 = rate_cross_leg3 * rate_cross_leg3;
+        let t338 = t309 * t310 + 0.56 * c_rod_leg3 * (t315 + t335);
+        let t339 = t13 * t315;
+        let rate_dot_arm_leg3 = t67 * (t338 + t88 * t339);
+        let t343 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t345 = garm_vx_leg1 * t268 + garm_vx_leg2 * t306 + garm_vx_leg3 * t343;
+        let t353 = garm_vy_leg1 * t268 + garm_vy_leg2 * t306 + garm_vy_leg3 * t343
+            - t196 * t345;
+        let t364 = t236
+            * (t218 * t345
+                - (minus_garm_vz_leg1 * t268 + minus_garm_vz_leg2 * t306
+                    + minus_garm_vz_leg3 * t343) - t226 * t353);
+        let t366 = t204 * t353 - t226 * t364;
+        let t370 = t179 * t345 - t196 * t366 + t218 * t364;
+        let t375 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t172;
+        let t381 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t172;
+        let t382 = t364 + 9.81;
+        let t385 = t152 * t172;
+        let t387 = t164 * t172;
+        let t390 = t169 * t172;
+        let t396 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t172;
+        let t401 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t172;
+        let t407 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t172;
+        let t410 = 9.81 * c_arm_leg1;
+        let t411 = 9.81 * c_arm_leg2;
+        let t412 = 9.81 * minus_c_arm_leg3;
+        let t413 = 9.81 * minus_s_arm_leg1;
+        let t414 = 9.81 * minus_s_arm_leg2;
+        let t415 = 9.81 * s_arm_leg3;
+        let t419 = grod_vy_leg1 * t375;
+        let t420 = pose[1] * minus_rate_cross_leg1;
+        let t422 = 3.188775510204082 * (t256 * t420);
+        let t423 = t419 * t422;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t180 * garm_vy_leg1);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t129 * c_arm_leg1);
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (t129 * minus_s_arm_leg1);
+        let t434 = minus_gcross_vy_leg1 * t375 - minus_gcross_vx_leg1 * t173
+            - minus_gcross_vz_leg1 * t381;
+        let t436 = rate_rod_leg1 * (1.7857142857142858 * t256);
+        let t437 = 0.24 * actuator_accelerations[0];
+        let t442 = 0.24 * t181;
+        let t444 = rate_rod_leg1 * t420;
+        let t448 = c_cross_leg1 * t437 + s_armcross_leg1 * t370 + c_armcross_leg1 * t364
+            + s_cross_leg1 * t442 + t444 + t444;
+        let t449 = 1.7857142857142858 * t448;
+        let t450 = t132 * t449;
+        let t452 = t436 + t450 + t436;
+        let t453 = c_rod_leg1 * t452;
+        let t454 = t132 * t453;
+        let t457 = grod_vy_leg1 * t387;
+        let t458 = t457 * t422;
+        let t463 = minus_gcross_vy_leg1 * t387 - minus_gcross_vx_leg1 * t385
+            - minus_gcross_vz_leg1 * t390;
+        let t470 = minus_gcross_vx_leg1 * t401 - minus_gcross_vy_leg1 * t396
+            + minus_gcross_vz_leg1 * t407;
+        let t472 = grod_vy_leg1 * t396;
+        let t473 = t472 * t422;
+        let gcross_vx_leg2 = t98 * (t110 * t286 + t279 - 0.8660254037844387 * t294);
+        let minus_gcross_vy_leg2 = t98 * (t96 * t286 + t281 + 0.5 * t294);
+        let minus_gcross_vz_leg2 = t98 * (minus_s_arm_leg2 * t47);
+        let t491 = gcross_vx_leg2 * t173 + minus_gcross_vy_leg2 * t375
+            - minus_gcross_vz_leg2 * t381;
+        let t493 = minus_rate_rod_leg2 * (1.7857142857142858 * t296);
+        let t499 = 0.24 * t271;
+        let t501 = t14 * rate_cross_leg2;
+        let t502 = minus_rate_rod_leg2 * t501;
+        let t513 = t279 * t370 - t281 * t366 - c_armcross_leg2 * t364
+            - (s_cross_leg2 * t499 - t502 - t502)
+            - t286 * (t96 * t366 - t110 * t370 - s_armcross_leg2 * t364 + t301);
+        let t514 = 0.8660254037844387 * t370;
+        let t515 = 0.5 * t366;
+        let t516 = t514 + t515;
+        let t517 = t516 + t302;
+        let t519 = t513 - t294 * t517;
+        let t520 = 1.7857142857142858 * t519;
+        let t521 = t99 * t520;
+        let t523 = t493 + t521 + t493;
+        let t524 = c_rod_leg2 * t523;
+        let t525 = t99 * t524;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t97;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t97;
+        let t531 = minus_grod_vy_leg2 * t375 - minus_grod_vx_leg2 * t173;
+        let t533 = 3.188775510204082 * (t296 * t501);
+        let t534 = t531 * t533;
+        let t540 = gcross_vx_leg2 * t385 + minus_gcross_vy_leg2 * t387
+            - minus_gcross_vz_leg2 * t390;
+        let t544 = minus_grod_vy_leg2 * t387 - minus_grod_vx_leg2 * t385;
+        let t545 = t544 * t533;
+        let t549 = minus_grod_vx_leg2 * t401 - minus_grod_vy_leg2 * t396;
+        let t550 = t549 * t533;
+        let t555 = gcross_vx_leg2 * t401 + minus_gcross_vy_leg2 * t396
+            - minus_gcross_vz_leg2 * t407;
+        let gcross_vx_leg3 = t87 * (t316 - t159 * t323 - 0.8660254037844387 * t331);
+        let gcross_vy_leg3 = t87 * (t318 - t85 * t323 + 0.5 * t331);
+        let gcross_vz_leg3 = t87 * (t66 * s_arm_leg3);
+        let t574 = gcross_vx_leg3 * t173 - gcross_vy_leg3 * t375 + gcross_vz_leg3 * t381;
+        let t576 = rate_rod_leg3 * (1.7857142857142858 * t333);
+        let t582 = 0.24 * t310;
+        let t584 = t13 * rate_cross_leg3;
+        let t585 = rate_rod_leg3 * t584;
+        let t596 = t316 * t370 + t318 * t366 + minus_c_armcross_leg3 * t364
+            - (s_cross_leg3 * t582 - t585 - t585)
+            - t323 * (t159 * t370 + t85 * t366 - s_armcross_leg3 * t364 + t338);
+        let t597 = t514 - t515;
+        let t598 = t597 + t339;
+        let t600 = t596 - t331 * t598;
+        let t601 = 1.7857142857142858 * t600;
+        let t602 = t88 * t601;
+        let t604 = t576 + t602 + t576;
+        let t605 = c_rod_leg3 * t604;
+        let t606 = t88 * t605;
+        let grod_vx_leg3 = 1.5464739353293548 * t86;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t86;
+        let t612 = grod_vx_leg3 * t173 + minus_grod_vy_leg3 * t375;
+        let t614 = 3.188775510204082 * (t333 * t584);
+        let t615 = t612 * t614;
+        let t621 = gcross_vx_leg3 * t385 - gcross_vy_leg3 * t387 + gcross_vz_leg3 * t390;
+        let t625 = grod_vx_leg3 * t385 + minus_grod_vy_leg3 * t387;
+        let t626 = t625 * t614;
+        let t632 = gcross_vy_leg3 * t396 - gcross_vx_leg3 * t401 - gcross_vz_leg3 * t407;
+        let t636 = grod_vx_leg3 * t401 + minus_grod_vy_leg3 * t396;
+        let t637 = t636 * t614;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t476 = t401 - t293;
-        let t485 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t489 = t203 * (c_armcross_leg1 * t405 - s_armcross_leg1 * t399 + t289)
-            + t276 * t476 + s_armcross_leg1 * t405 + c_armcross_leg1 * t399
-            + 0.24 * s_cross_leg1 * t201 + t485 + t485;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t489;
-        let t491 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t493 = rate_rod_leg1 * (1.7857142857142858 * t282);
-        let t494 = t491 + t493;
-        let t497 = c_rod_leg1 * (1.7857142857142858 * t485);
-        let t498 = s_rod_leg1 * t494 + t497;
-        let t501 = grod_vy_leg1 * t422;
-        let t502 = t501 * t456;
-        let t507 = minus_gcross_vy_leg1 * t422 - minus_gcross_vx_leg1 * t420
-            - minus_gcross_vz_leg1 * t425;
-        let t514 = minus_gcross_vx_leg1 * t436 - minus_gcross_vy_leg1 * t431
-            + minus_gcross_vz_leg1 * t442;
-        let t516 = grod_vy_leg1 * t431;
-        let t517 = t516 * t456;
-        let gcross_vx_leg2 = t111 * (t123 * t314 + t307 - 0.8660254037844387 * t323);
-        let minus_gcross_vy_leg2 = t111 * (t109 * t314 + t309 + 0.5 * t323);
-        let gcross_vz_leg2 = t111 * (s_armcross_leg2 * t314 - c_armcross_leg2);
-        let t536 = gcross_vx_leg2 * t193 + minus_gcross_vy_leg2 * t410
-            + gcross_vz_leg2 * t416;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t30;
-        let t546 = t30 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t549 = t307 * t405 - t309 * t401 - c_armcross_leg2 * t399
-            - (0.24 * s_cross_leg2 * t300 - t546 - t546);
-        let t558 = 0.8660254037844387 * t405;
-        let t559 = 0.5 * t401;
-        let t560 = t558 + t559;
-        let t561 = t560 + t334;
-        let t563 = t549
-            - t314 * (t109 * t401 - t123 * t405 - s_armcross_leg2 * t399 + t330)
-            - t323 * t561;
-        let rate_dot_cross_leg2 = t111 * t563;
-        let t565 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t567 = minus_rate_rod_leg2 * (1.7857142857142858 * t325);
-        let t568 = t565 + t567;
-        let t571 = c_rod_leg2 * (1.7857142857142858 * t546);
-        let t572 = minus_s_rod_leg2 * t568 + t571;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t110;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t110;
-        let t578 = minus_grod_vy_leg2 * t410 - minus_grod_vx_leg2 * t193;
-        let t580 = 3.188775510204082 * (t325 * t332);
-        let t581 = t578 * t580;
-        let t587 = gcross_vx_leg2 * t420 + minus_gcross_vy_leg2 * t422
-            + gcross_vz_leg2 * t425;
-        let t591 = minus_grod_vy_leg2 * t422 - minus_grod_vx_leg2 * t420;
-        let t592 = t591 * t580;
-        let t596 = minus_grod_vx_leg2 * t436 - minus_grod_vy_leg2 * t431;
-        let t597 = t596 * t580;
-        let t602 = gcross_vx_leg2 * t436 + minus_gcross_vy_leg2 * t431
-            + gcross_vz_leg2 * t442;
-        let gcross_vx_leg3 = t100 * (t347 - t179 * t354 - 0.8660254037844387 * t363);
-        let gcross_vy_leg3 = t100 * (t349 - t98 * t354 + 0.5 * t363);
-        let gcross_vz_leg3 = t100 * (s_armcross_leg3 * t354 + minus_c_armcross_leg3);
-        let t622 = gcross_vx_leg3 * t193 - gcross_vy_leg3 * t410 + gcross_vz_leg3 * t416;
-        let s_rod_leg3 = 1.7857142857142858 * t70;
-        let t632 = t70 * (rate_cross_leg3 * rate_rod_leg3);
-        let t635 = t347 * t405 + t349 * t401 + minus_c_armcross_leg3 * t399
-            - (0.24 * s_cross_leg3 * t342 - t632 - t632);
-        let t644 = t558 - t559;
-        let t645 = t644 - t374;
-        let t647 = t635
-            - t354 * (t179 * t405 + t98 * t401 - s_armcross_leg3 * t399 + t370)
-            - t363 * t645;
-        let rate_dot_cross_leg3 = t100 * t647;
-        let t649 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t651 = rate_rod_leg3 * (1.7857142857142858 * t365);
-        let t652 = t649 + t651;
-        let t655 = c_rod_leg3 * (1.7857142857142858 * t632);
-        let t656 = s_rod_leg3 * t652 + t655;
-        let grod_vx_leg3 = 1.5464739353293548 * t99;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t99;
-        let t662 = grod_vx_leg3 * t193 + minus_grod_vy_leg3 * t410;
-        let t664 = 3.188775510204082 * (t365 * t371);
-        let t665 = t662 * t664;
-        let t671 = gcross_vx_leg3 * t420 - gcross_vy_leg3 * t422 + gcross_vz_leg3 * t425;
-        let t675 = grod_vx_leg3 * t420 + minus_grod_vy_leg3 * t422;
-        let t676 = t675 * t664;
-        let t682 = gcross_vy_leg3 * t431 - gcross_vx_leg3 * t436 - gcross_vz_leg3 * t442;
-        let t686 = grod_vx_leg3 * t436 + minus_grod_vy_leg3 * t431;
-        let t687 = t686 * t664;
-        let t689 = t485 - t489;
-        let t693 = t493 + t494;
-        let t695 = 3.188775510204082 * (pose[1] * (t485 + t689)) - c_rod_leg1 * t693;
-        let t697 = t290 * t290;
-        let t700 = 3.188775510204082 * (t697 - t282 * t282);
-        let t709 = t563 - t546;
-        let t713 = t567 + t568;
-        let t715 = 3.188775510204082 * (t30 * (t546 - t709)) - c_rod_leg2 * t713;
-        let t717 = t332 * t332;
-        let t720 = 3.188775510204082 * (t717 - t325 * t325);
-        let t729 = t651 + t652;
-        let t731 = t647 - t632;
-        let t735 = c_rod_leg3 * t729 - 3.188775510204082 * (t70 * (t632 - t731));
-        let t737 = t371 * t371;
-        let t740 = 3.188775510204082 * (t737 - t365 * t365);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t476;
-        let t752 = 3.188775510204082 * t697;
-        let t755 = s_rod_leg1 * (t456 + rate_dot_rod_leg1) + c_rod_leg1 * (t286 - t752);
-        let minus_rate_dot_rod_leg2 = t111 * t561;
-        let t768 = 3.188775510204082 * t717;
-        let t771 = minus_s_rod_leg2 * (t580 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t306 - t768);
-        let rate_dot_rod_leg3 = t100 * t645;
-        let t784 = 3.188775510204082 * t737;
-        let t787 = s_rod_leg3 * (t664 + rate_dot_rod_leg3) + c_rod_leg3 * (t346 - t784);
-        let t799 = t497 + c_rod_leg1 * (1.7857142857142858 * t689);
-        let t808 = c_rod_leg2 * (1.7857142857142858 * t709) - t571;
-        let t817 = c_rod_leg3 * (1.7857142857142858 * t731) - t655;
-        let t824 = 1.7857142857142858 * t401;
-        let t826 = 1.7857142857142858 * t489;
-        let t835 = 1.7857142857142858 * t563;
-        let t837 = 1.7857142857142858 * t560;
-        let t846 = 1.7857142857142858 * t644;
-        let t848 = 1.7857142857142858 * t647;
-        let t870 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
-        let t877 = 0.24 * actuator_accelerations[0] - t445;
-        let t880 = t448 - 0.24 * t201;
-        let t883 = s_rod_leg1 * (c_cross_leg1 * t877 - s_cross_leg1 * t880);
-        let t885 = 0.8928571428571429 * t138 * (t456 - rate_dot_rod_leg1)
-            + t870 * (t752 + t286) + t200 * t693 - t469 * t883;
-        let t888 = c_cross_leg1 * t880 + s_cross_leg1 * t877;
-        let t889 = c_rod_leg1 * t888;
-        let t899 = 0.24 * actuator_accelerations[1] - t446;
-        let t902 = t449 - 0.24 * t300;
-        let t905 = minus_s_rod_leg2 * (c_cross_leg2 * t899 - s_cross_leg2 * t902);
-        let t909 = c_cross_leg2 * t902 + s_cross_leg2 * t899;
-        let t910 = c_rod_leg2 * t909;
-        let t917 = 0.42857142857142855 * (t30 * s_cross_leg2);
-        let t924 = 0.8928571428571429 * t23 * (minus_rate_dot_rod_leg2 - t580)
-            - t917 * (t768 + t306) + t299 * t713 + t587 * t905;
-        let t931 = t450 + 0.24 * t342;
-        let t934 = t447 + 0.24 * actuator_accelerations[2];
-        let t937 = s_rod_leg3 * (s_cross_leg3 * t931 + c_cross_leg3 * t934);
-        let t941 = s_cross_leg3 * t934 - c_cross_leg3 * t931;
-        let t942 = c_rod_leg3 * t941;
-        let t952 = 0.42857142857142855 * (t70 * s_cross_leg3);
-        let t959 = 0.8928571428571429 * t67 * (t664 - rate_dot_rod_leg3)
-            + t952 * (t784 + t346) - t341 * t729 - t682 * t937;
+        let t644 = s_rod_leg1 * t436 + c_rod_leg1 * (1.7857142857142858 * (t444 - t448));
+        let t646 = t132 * t644 - t453;
+        let t648 = t420 * t420;
+        let t651 = 3.188775510204082 * (t648 - t256 * t256);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t14;
+        let t665 = c_rod_leg2 * (1.7857142857142858 * (t519 - t502))
+            - minus_s_rod_leg2 * t493;
+        let t667 = t99 * t665 + t524;
+        let t669 = t501 * t501;
+        let t672 = 3.188775510204082 * (t669 - t296 * t296);
+        let s_rod_leg3 = 1.7857142857142858 * t13;
+        let t686 = c_rod_leg3 * (1.7857142857142858 * (t600 - t585)) - s_rod_leg3 * t576;
+        let t688 = t605 + t88 * t686;
+        let t690 = t584 * t584;
+        let t693 = 3.188775510204082 * (t690 - t333 * t333);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t366 + t264);
+        let t706 = 3.188775510204082 * t648;
+        let t709 = s_rod_leg1 * (t422 + rate_dot_rod_leg1) + c_rod_leg1 * (t260 - t706);
+        let minus_rate_dot_rod_leg2 = t98 * t517;
+        let t722 = 3.188775510204082 * t669;
+        let t725 = minus_s_rod_leg2 * (t533 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t278 - t722);
+        let rate_dot_rod_leg3 = t87 * t598;
+        let t738 = 3.188775510204082 * t690;
+        let t741 = s_rod_leg3 * (t614 + rate_dot_rod_leg3) + c_rod_leg3 * (t315 - t738);
+        let t769 = 1.7857142857142858 * t366;
+        let t780 = 1.7857142857142858 * t516;
+        let t789 = 1.7857142857142858 * t597;
+        let t808 = 0.8928571428571429 * t123;
+        let t811 = t132 * t808;
+        let t817 = t437 - t410;
+        let t819 = t413 - t442;
+        let t822 = s_rod_leg1 * (c_cross_leg1 * t817 - s_cross_leg1 * t819);
+        let t827 = c_cross_leg1 * t819 + s_cross_leg1 * t817;
+        let t828 = c_rod_leg1 * t827;
+        let t830 = t808 * (t422 - rate_dot_rod_leg1) + t811 * (t706 + t260) + t180 * t452
+            - t434 * t822 + t419 * t828;
+        let t838 = 0.24 * actuator_accelerations[1] - t411;
+        let t840 = t414 - t499;
+        let t843 = minus_s_rod_leg2 * (c_cross_leg2 * t838 - s_cross_leg2 * t840);
+        let t847 = c_cross_leg2 * t840 + s_cross_leg2 * t838;
+        let t848 = c_rod_leg2 * t847;
+        let t851 = 0.8928571428571429 * t29;
+        let t854 = t99 * t851;
+        let t863 = t851 * (minus_rate_dot_rod_leg2 - t533) - t854 * (t722 + t278)
+            + t270 * t523 + t540 * t843 - t544 * t848;
+        let t867 = t415 + t582;
+        let t870 = t412 + 0.24 * actuator_accelerations[2];
+        let t873 = s_rod_leg3 * (s_cross_leg3 * t867 + c_cross_leg3 * t870);
+        let t877 = s_cross_leg3 * t870 - c_cross_leg3 * t867;
+        let t878 = c_rod_leg3 * t877;
+        let t884 = 0.8928571428571429 * t60;
+        let t887 = t88 * t884;
+        let t896 = t884 * (t614 - rate_dot_rod_leg3) + t887 * (t738 + t315) - t309 * t604
+            - t632 * t873 + t636 * t878;
         Ok([
             [
-                t193 * t405 - t410 * t401 + t416 * t417, actuator_accelerations[0], 0.0, 0.0, -t445,
-                0.0, 0.0, -t448, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
+                t173 * t370 - t375 * t366 + t381 * t382, actuator_accelerations[0], 0.0, 0.0, -t410,
+                0.0, 0.0, -t413, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t457 - t469 * t498, t536 * t572 + t581, t622 * t656 - t665,
-                t469 * t695 - t454 * t700, t536 * t715 + t578 * t720, t622 * t735 + t662 * t740,
-                t469 * t755 + t454 * t491, t536 * t771 - t578 * t565, t622 * t787 + t662 * t649,
-                t469 * t799 - t457, t536 * t808 - t581, t622 * t817 + t665,
-                t469 * t824 + t454 * t826, t578 * t835 - t536 * t837, t622 * t846 + t662 * t848,
-                -(t454 * rate_dot_rod_leg1), -(t578 * minus_rate_dot_rod_leg2),
-                t662 * rate_dot_rod_leg3, t885 + t454 * t889, t536 * t905 - t578 * t910,
-                -(t622 * t937 + t662 * t942),
-                t200 * t284 - (1.594387755102041 * (t138 * t489) + t870 * t491)
-                    + t469 * t888,
-                t536 * t909,
-                t622 * t941,
+                t423 - t434 * t454, t491 * t525 + t534, t574 * t606 - t615,
+                t434 * t646 - t419 * t651, t531 * t672 - t491 * t667, t574 * t688 + t612 * t693,
+                t434 * t709 + t419 * t450, t491 * t725 - t531 * t521, t574 * t741 + t612 * t602,
+                t434 * t644 - t423, t491 * t665 - t534, t574 * t686 + t615,
+                t434 * t769 + t419 * t449, t531 * t520 - t491 * t780, t574 * t789 + t612 * t601,
+                -(t419 * rate_dot_rod_leg1), -(t531 * minus_rate_dot_rod_leg2),
+                t612 * rate_dot_rod_leg3, t830, t491 * t843 - t531 * t848,
+                -(t574 * t873 + t612 * t878),
+                t180 * t258 - (t449 * t808 + t811 * t450) + t434 * t827, t491 * t847, t574 * t877,
             ],
             [
-                t420 * t405 - t422 * t401 + t425 * t417, 0.0, actuator_accelerations[1], 0.0, 0.0,
-                -t446, 0.0, 0.0, -t449, 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
+                t385 * t370 - t387 * t366 + t390 * t382, 0.0, actuator_accelerations[1], 0.0, 0.0,
+                -t411, 0.0, 0.0, -t414, 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                t502 - t507 * t498, t587 * t572 + t592, t671 * t656 - t676,
-                t507 * t695 - t501 * t700, t587 * t715 + t591 * t720, t671 * t735 + t675 * t740,
-                t507 * t755 + t501 * t491, t587 * t771 - t591 * t565, t671 * t787 + t675 * t649,
-                t507 * t799 - t502, t587 * t808 - t592, t671 * t817 + t676,
-                t507 * t824 + t501 * t826, t591 * t835 - t587 * t837, t671 * t846 + t675 * t848,
-                -(t501 * rate_dot_rod_leg1), -(t591 * minus_rate_dot_rod_leg2),
-                t675 * rate_dot_rod_leg3, t501 * t889 - t507 * t883, t924 - t591 * t910,
-                -(t671 * t937 + t675 * t942), t507 * t888,
-                1.594387755102041 * (t23 * t563) + t917 * t565 + t299 * t327
-                    + t587 * t909,
-                t671 * t941,
+                t458 - t463 * t454, t540 * t525 + t545, t621 * t606 - t626,
+                t463 * t646 - t457 * t651, t544 * t672 - t540 * t667, t621 * t688 + t625 * t693,
+                t463 * t709 + t457 * t450, t540 * t725 - t544 * t521, t621 * t741 + t625 * t602,
+                t463 * t644 - t458, t540 * t665 - t545, t621 * t686 + t626,
+                t463 * t769 + t457 * t449, t544 * t520 - t540 * t780, t621 * t789 + t625 * t601,
+                -(t457 * rate_dot_rod_leg1), -(t544 * minus_rate_dot_rod_leg2),
+                t625 * rate_dot_rod_leg3, t457 * t828 - t463 * t822, t863,
+                -(t621 * t873 + t625 * t878), t463 * t827,
+                t520 * t851 + t854 * t521 + t270 * t298 + t540 * t847, t621 * t877,
             ],
             [
-                t431 * t401 - t436 * t405 - t442 * t417, 0.0, 0.0, actuator_accelerations[2], 0.0,
-                0.0, t447, 0.0, 0.0, t450, 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0, -(t514 * t498 + t517),
-                t597 - t602 * t572, t682 * t656 + t687, t514 * t695 + t516 * t700,
-                t596 * t720 - t602 * t715, t682 * t735 - t686 * t740, t514 * t755 - t516 * t491,
-                -(t602 * t771 + t596 * t565), t682 * t787 - t686 * t649, t514 * t799 + t517,
-                -(t602 * t808 + t597), t682 * t817 - t687, t514 * t824 - t516 * t826,
-                t602 * t837 + t596 * t835, t682 * t846 - t686 * t848, t516 * rate_dot_rod_leg1,
-                -(t596 * minus_rate_dot_rod_leg2), -(t686 * rate_dot_rod_leg3),
-                -(t514 * t883 + t516 * t889), -(t602 * t905 + t596 * t910), t959 + t686 * t942,
-                t514 * t888, -(t602 * t909),
-                1.594387755102041 * (t67 * t647) + t952 * t649 + t341 * t367
-                    + t682 * t941,
+                t396 * t366 - t401 * t370 - t407 * t382, 0.0, 0.0, actuator_accelerations[2], 0.0,
+                0.0, t412, 0.0, 0.0, t415, 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
+                ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0, -(t470 * t454 + t473),
+                t550 - t555 * t525, t632 * t606 + t637, t470 * t646 + t472 * t651,
+                t549 * t672 + t555 * t667, t632 * t688 - t636 * t693, t470 * t709 - t472 * t450,
+                -(t555 * t725 + t549 * t521), t632 * t741 - t636 * t602, t470 * t644 + t473,
+                -(t555 * t665 + t550), t632 * t686 - t637, t470 * t769 - t472 * t449,
+                t555 * t780 + t549 * t520, t632 * t789 - t636 * t601, t472 * rate_dot_rod_leg1,
+                -(t549 * minus_rate_dot_rod_leg2), -(t636 * rate_dot_rod_leg3),
+                -(t470 * t822 + t472 * t828), -(t555 * t843 + t549 * t848), t896, t470 * t827,
+                -(t555 * t847), t601 * t884 + t887 * t602 + t309 * t335 + t632 * t877,
             ],
         ])
     }
@@ -7240,7 +6948,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 380 operations (132 additions, 230 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 383 intermediates.
+    /// 350 operations (121 additions, 211 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 353 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7251,204 +6959,205 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t22 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t45 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t48 = pose[0] - 0.025 + 0.1;
-        let t49 = 0.5 * t48;
-        let t50 = 0.8660254037844387 * t45 - t49;
-        let t53 = 0.2304 * (t50 * t50 + t3);
-        let t54 = t48 * t48;
-        let t57 = t54 + t45 * t45 + t3;
-        let t59 = t57 - 0.3136 + 0.0576;
-        let t61 = t53 - t59 * t59;
-        ::overact::guard::reach(t61, "leg2")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.8660254037844387 * t48;
-        let t66 = t64 + 0.5 * t45;
-        let t67 = t66 * t66;
-        let t69 = 1.0 - 3.188775510204082 * t67;
-        ::overact::guard::reach(t69, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t69);
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t38 = t0 + 0.025;
+        let t39 = t38 * t38;
+        let t41 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t44 = t39 + t41 * t41 + t3;
+        let t47 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t49 = 0.8660254037844387 * t38 - 0.5 * t47;
+        let t50 = pose[1] + t49;
+        let t51 = t50 * t50;
+        let t53 = 0.2304 * (t44 - t51);
+        let t54 = t44 - 0.3136;
+        let t55 = t54 + 0.0576;
+        let t57 = t53 - t55 * t55;
+        ::overact::guard::reach(t57, "leg2")?;
+        let t58 = ::overact::math::sqrt(t57);
+        let t60 = 1.0 - 3.188775510204082 * t51;
+        ::overact::guard::reach(t60, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t60);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t71 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t62 / t71;
+        let t62 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t58 / t62;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t73 = 1.0 / s_cross_leg2;
-        let t74 = 4.166666666666667 * t73;
-        let t75 = 1.7857142857142858 / c_rod_leg2;
-        let t76 = t66 * t75;
-        let t78 = 1.0 / t53;
-        let t79 = 0.48 * t50;
-        let c_arm_leg2 = t78 * (t79 * t59 - t14 * t62);
-        let c_cross_leg2 = (t57 - (0.0576 + t67) - 0.3136 * t69) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t78 * (t14 * t59 + t79 * t62);
+        let t64 = 1.0 / s_cross_leg2;
+        let t65 = 4.166666666666667 * t64;
+        let t66 = 1.7857142857142858 / c_rod_leg2;
+        let t67 = t50 * t66;
+        let t69 = 1.0 / t53;
+        let t71 = 0.5 * t38;
+        let t73 = 0.48 * (0.8660254037844387 * t41 - t71);
+        let c_arm_leg2 = t69 * (t73 * t55 - t13 * t58);
+        let c_cross_leg2 = (-0.0576 + t54) / t62;
+        let minus_s_arm_leg2 = t69 * (t13 * t55 + t73 * t58);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t97 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t74 * (0.8660254037844387 * t76 - t97);
-        let t103 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t105 = t49 + 0.8660254037844387 * t103;
-        let t108 = 0.2304 * (t105 * t105 + t3);
-        let t111 = t54 + t103 * t103 + t3;
-        let t113 = t111 - 0.3136 + 0.0576;
-        let t115 = t108 - t113 * t113;
-        ::overact::guard::reach(t115, "leg3")?;
-        let t116 = ::overact::math::sqrt(t115);
-        let t119 = t64 - 0.5 * t103;
-        let t120 = t119 * t119;
-        let t122 = 1.0 - 3.188775510204082 * t120;
-        ::overact::guard::reach(t122, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t122);
+        let t87 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t65 * (0.8660254037844387 * t67 - t87);
+        let t94 = t39 + t47 * t47 + t3;
+        let t95 = t49 * t49;
+        let t97 = 0.2304 * (t94 - t95);
+        let t98 = t94 - 0.3136;
+        let t99 = t98 + 0.0576;
+        let t101 = t97 - t99 * t99;
+        ::overact::guard::reach(t101, "leg3")?;
+        let t102 = ::overact::math::sqrt(t101);
+        let t104 = 1.0 - 3.188775510204082 * t95;
+        ::overact::guard::reach(t104, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t104);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t124 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t116 / t124;
+        let t106 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t102 / t106;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t126 = 1.0 / s_cross_leg3;
-        let t127 = 4.166666666666667 * t126;
-        let t128 = 1.0 / t108;
-        let t129 = 0.48 * t105;
-        let minus_c_arm_leg3 = t128 * (t129 * t113 + t14 * t116);
-        let c_cross_leg3 = (t111 - (0.0576 + t120) - 0.3136 * t122)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t128 * (t129 * t116 - t14 * t113);
+        let t108 = 1.0 / s_cross_leg3;
+        let t109 = 4.166666666666667 * t108;
+        let t110 = 1.0 / t97;
+        let t113 = 0.48 * (t71 + 0.8660254037844387 * t47);
+        let minus_c_arm_leg3 = t110 * (t113 * t99 + t13 * t102);
+        let c_cross_leg3 = (-0.0576 + t98) / t106;
+        let s_arm_leg3 = t110 * (t113 * t102 - t13 * t99);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t147 = 0.5 * minus_c_armcross_leg3;
-        let t148 = 1.7857142857142858 / c_rod_leg3;
-        let t149 = t119 * t148;
-        let garm_vx_leg3 = t127 * (t147 + 0.8660254037844387 * t149);
-        let t154 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t127 = 0.5 * minus_c_armcross_leg3;
+        let t128 = 1.7857142857142858 / c_rod_leg3;
+        let t129 = t49 * t128;
+        let garm_vx_leg3 = t109 * (t127 + 0.8660254037844387 * t129);
+        let t134 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t154, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t154, 14.869730172882841, "actuators")?;
-        let t155 = 1.0 / t154;
-        let t156 = 0.24 * c_cross_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t165 = garm_vx_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t134, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t134, 14.869730172882841, "actuators")?;
+        let t135 = 1.0 / t134;
+        let t136 = c_cross_leg1 * t34;
+        let t141 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t167 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t41 * t167;
-        let t170 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t74 * (t170 + 0.5 * t76);
-        let t176 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t127 * (t176 - 0.5 * t149);
-        let t181 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t144 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t35 * t144;
+        let t147 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t65 * (t147 + 0.5 * t67);
+        let t153 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t109 * (t153 - 0.5 * t129);
+        let t158 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t182 = t181 * t155;
-        let t189 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t181 * t182;
-        ::overact::guard::platform(t189, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t189, 14.869730172882846, "actuators")?;
-        let t190 = 1.0 / t189;
-        let t197 = garm_vy_leg1 * actuator_velocities[0]
+        let t159 = t158 * t135;
+        let t166 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t158 * t159;
+        ::overact::guard::platform(t166, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t166, 14.869730172882846, "actuators")?;
+        let t167 = 1.0 / t166;
+        let t174 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t165 * t182;
+            + garm_vy_leg3 * actuator_velocities[2] - t141 * t159;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t65;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t127;
-        let t215 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t109;
+        let t192 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t216 = t215 * t155;
-        let t223 = t181 * t216
+        let t193 = t192 * t135;
+        let t200 = t158 * t193
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t224 = t223 * t190;
-        let t233 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t201 = t200 * t167;
+        let t210 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t215 * t216 - t223 * t224;
-        ::overact::guard::platform(t233, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t233, 34.855350201355726, "actuators")?;
-        let t234 = 1.0 / t233;
-        let t244 = t234
-            * (t165 * t216
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t192 * t193 - t200 * t201;
+        ::overact::guard::platform(t210, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t210, 34.855350201355726, "actuators")?;
+        let t211 = 1.0 / t210;
+        let t221 = t211
+            * (t141 * t193
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t224 * t197);
-        let t246 = t190 * t197 - t224 * t244;
-        let t250 = t165 * t155 - t182 * t246 + t216 * t244;
-        let t261 = c_cross_leg1 * t40 * (c_armcross_leg1 * t250 - s_armcross_leg1 * t244)
-            + t156 * garm_vy_leg1 * t246 + s_armcross_leg1 * t250
-            + c_armcross_leg1 * t244;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t261;
-        let rate_rod_leg1 = grod_vy_leg1 * t246;
-        let t266 = minus_rate_cross_leg1 * minus_rate_cross_leg1
-            + rate_rod_leg1 * rate_rod_leg1;
-        let t274 = t156 * (actuator_velocities[0] * actuator_velocities[0]) + t36 * t266
-            - t167
-                * (minus_rate_cross_leg1 * (pose[1] * minus_rate_cross_leg1)
-                    - pose[1] * t266);
-        let rate_dot_arm_leg1 = t41 * t274;
-        let t276 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t278 = 0.24 * c_cross_leg2;
-        let t281 = 0.8660254037844387 * t250;
-        let t282 = 0.5 * t246;
-        let t283 = t281 + t282;
-        let minus_rate_rod_leg2 = t75 * t283;
-        let t300 = 0.5 * s_armcross_leg2 * t250
-            - 0.8660254037844387 * s_armcross_leg2 * t246 - c_armcross_leg2 * t244
-            - c_cross_leg2 * t73 * (t170 * t246 - t97 * t250 - s_armcross_leg2 * t244);
-        let rate_cross_leg2 = t75 * (t300 - t278 * (t74 * t76) * t283);
-        let t307 = minus_rate_rod_leg2 * minus_rate_rod_leg2
-            + rate_cross_leg2 * rate_cross_leg2;
-        let t315 = t278 * (actuator_velocities[1] * actuator_velocities[1]) + t71 * t307
-            + t76 * (t66 * t307 - rate_cross_leg2 * (t66 * rate_cross_leg2));
-        let rate_dot_arm_leg2 = t74 * t315;
-        let t317 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t320 = 0.24 * c_cross_leg3;
-        let t323 = t281 - t282;
-        let rate_rod_leg3 = t148 * t323;
-        let t340 = 0.5 * s_armcross_leg3 * t250
-            + 0.8660254037844387 * s_armcross_leg3 * t246 + minus_c_armcross_leg3 * t244
-            - c_cross_leg3 * t126 * (t147 * t250 + t176 * t246 - s_armcross_leg3 * t244);
-        let rate_cross_leg3 = t148 * (t340 - t320 * (t127 * t149) * t323);
-        let t347 = rate_rod_leg3 * rate_rod_leg3 + rate_cross_leg3 * rate_cross_leg3;
-        let t355 = t320 * (actuator_velocities[2] * actuator_velocities[2]) + t124 * t347
-            - t149 * (rate_cross_leg3 * (t119 * rate_cross_leg3) - t119 * t347);
-        let rate_dot_arm_leg3 = t127 * t355;
-        let t357 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t359 = garm_vx_leg1 * t276 + garm_vx_leg2 * t317 + garm_vx_leg3 * t357;
-        let t367 = garm_vy_leg1 * t276 + garm_vy_leg2 * t317 + garm_vy_leg3 * t357
-            - t182 * t359;
-        let t378 = t234
-            * (t216 * t359
-                - (minus_garm_vz_leg1 * t276 + minus_garm_vz_leg2 * t317
-                    + minus_garm_vz_leg3 * t357) - t224 * t367);
-        let t380 = t190 * t367 - t224 * t378;
-        Ok([[t155 * t359 - t182 * t380 + t216 * t378], [t380], [t378 + 9.81]])
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t201 * t174);
+        let t223 = t167 * t174 - t201 * t221;
+        let t227 = t141 * t135 - t159 * t223 + t193 * t221;
+        let t234 = t136 * (c_armcross_leg1 * t227 - s_armcross_leg1 * t221)
+            + t136 * t144 * t223;
+        let minus_rate_cross_leg1 = grod_vy_leg1
+            * (t234 + s_armcross_leg1 * t227 + c_armcross_leg1 * t221);
+        let rate_rod_leg1 = grod_vy_leg1 * t223;
+        let t244 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_arm_leg1 = t35
+            * (actuator_velocities[0] * t234
+                + 0.56 * c_rod_leg1
+                    * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t244)
+                + t144 * (pose[1] * t244));
+        let t252 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t258 = 0.8660254037844387 * t227;
+        let t259 = 0.5 * t223;
+        let t260 = t258 + t259;
+        let minus_rate_rod_leg2 = t66 * t260;
+        let t262 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t270 = c_cross_leg2 * t64;
+        let t277 = 0.5 * s_armcross_leg2 * t227
+            - 0.8660254037844387 * s_armcross_leg2 * t223 - c_armcross_leg2 * t221
+            - t270 * (t147 * t223 - t87 * t227 - s_armcross_leg2 * t221);
+        let rate_cross_leg2 = t66 * (t277 - t67 * t270 * t260);
+        let t288 = 0.24 * c_cross_leg2
+            * (actuator_velocities[1] * actuator_velocities[1])
+            + 0.56 * c_rod_leg2 * (t262 + rate_cross_leg2 * rate_cross_leg2)
+            + t67 * (t50 * t262);
+        let rate_dot_arm_leg2 = t65 * t288;
+        let t290 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t297 = t258 - t259;
+        let rate_rod_leg3 = t128 * t297;
+        let t299 = rate_rod_leg3 * rate_rod_leg3;
+        let t307 = c_cross_leg3 * t108;
+        let t314 = 0.5 * s_armcross_leg3 * t227
+            + 0.8660254037844387 * s_armcross_leg3 * t223 + minus_c_armcross_leg3 * t221
+            - t307 * (t127 * t227 + t153 * t223 - s_armcross_leg3 * t221);
+        let rate_cross_leg3 = t128 * (t314 - t129 * t307 * t297);
+        let t325 = 0.24 * c_cross_leg3
+            * (actuator_velocities[2] * actuator_velocities[2])
+            + 0.56 * c_rod_leg3 * (t299 + rate_cross_leg3 * rate_cross_leg3)
+            + t129 * (t49 * t299);
+        let rate_dot_arm_leg3 = t109 * t325;
+        let t327 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t329 = garm_vx_leg1 * t252 + garm_vx_leg2 * t290 + garm_vx_leg3 * t327;
+        let t337 = garm_vy_leg1 * t252 + garm_vy_leg2 * t290 + garm_vy_leg3 * t327
+            - t159 * t329;
+        let t348 = t211
+            * (t193 * t329
+                - (minus_garm_vz_leg1 * t252 + minus_garm_vz_leg2 * t290
+                    + minus_garm_vz_leg3 * t327) - t201 * t337);
+        let t350 = t167 * t337 - t201 * t348;
+        Ok([[t135 * t329 - t159 * t350 + t193 * t348], [t350], [t348 + 9.81]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -7460,7 +7169,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 222 operations (76 additions, 130 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 225 intermediates.
+    /// 202 operations (68 additions, 118 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 205 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7469,135 +7178,137 @@ impl Delta {
         _twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let t1 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t4 = pose[0] - 0.025 + 0.1;
-        let t5 = 0.5 * t4;
-        let t6 = 0.8660254037844387 * t1 - t5;
-        let t8 = pose[2] * pose[2];
-        let t10 = 0.2304 * (t6 * t6 + t8);
-        let t11 = 1.0 / t10;
-        let t12 = 0.48 * t6;
-        let t13 = t4 * t4;
-        let t16 = t13 + t1 * t1 + t8;
-        let t18 = t16 - 0.3136 + 0.0576;
-        let t20 = 0.48 * pose[2];
-        let t22 = t10 - t18 * t18;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let c_arm_leg2 = t11 * (t12 * t18 - t20 * t23);
-        let t28 = 0.8660254037844387 * t4;
-        let t30 = t28 + 0.5 * t1;
-        let t31 = t30 * t30;
-        let t33 = 1.0 - 3.188775510204082 * t31;
-        ::overact::guard::reach(t33, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t33);
+        let t0 = pose[0] + 0.05;
+        let t1 = 0.025 + t0;
+        let t2 = t1 * t1;
+        let t4 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t7 = pose[2] * pose[2];
+        let t8 = t2 + t4 * t4 + t7;
+        let t11 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t13 = 0.8660254037844387 * t1 - 0.5 * t11;
+        let t14 = pose[1] + t13;
+        let t15 = t14 * t14;
+        let t17 = 0.2304 * (t8 - t15);
+        let t18 = 1.0 / t17;
+        let t20 = 0.5 * t1;
+        let t22 = 0.48 * (0.8660254037844387 * t4 - t20);
+        let t23 = t8 - 0.3136;
+        let t24 = t23 + 0.0576;
+        let t26 = 0.48 * pose[2];
+        let t28 = t17 - t24 * t24;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let c_arm_leg2 = t18 * (t22 * t24 - t26 * t29);
+        let t34 = 1.0 - 3.188775510204082 * t15;
+        ::overact::guard::reach(t34, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t34);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t23 / (0.56 * c_rod_leg2);
+        let t36 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t29 / t36;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t11 * (t20 * t18 + t12 * t23);
-        let c_cross_leg2 = (t16 - (0.0576 + t31) - 0.3136 * t33) / (0.2688 * c_rod_leg2);
+        let minus_s_arm_leg2 = t18 * (t26 * t24 + t22 * t29);
+        let c_cross_leg2 = (t23 + -0.0576) / t36;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t50 = 4.166666666666667 / s_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t50;
-        let t53 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t55 = t5 + 0.8660254037844387 * t53;
-        let t58 = 0.2304 * (t55 * t55 + t8);
-        let t61 = t13 + t53 * t53 + t8;
-        let t63 = t61 - 0.3136 + 0.0576;
-        let t65 = t58 - t63 * t63;
-        ::overact::guard::reach(t65, "leg3")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t69 = t28 - 0.5 * t53;
-        let t70 = t69 * t69;
-        let t72 = 1.0 - 3.188775510204082 * t70;
-        ::overact::guard::reach(t72, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t72);
+        let t47 = 4.166666666666667 / s_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t47;
+        let t51 = t2 + t11 * t11 + t7;
+        let t52 = t13 * t13;
+        let t54 = 0.2304 * (t51 - t52);
+        let t55 = t51 - 0.3136;
+        let t56 = t55 + 0.0576;
+        let t58 = t54 - t56 * t56;
+        ::overact::guard::reach(t58, "leg3")?;
+        let t59 = ::overact::math::sqrt(t58);
+        let t61 = 1.0 - 3.188775510204082 * t52;
+        ::overact::guard::reach(t61, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t61);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t66 / (0.56 * c_rod_leg3);
+        let t63 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t59 / t63;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t76 = 4.166666666666667 / s_cross_leg3;
-        let t77 = 1.0 / t58;
-        let t78 = 0.48 * t55;
-        let minus_c_arm_leg3 = t77 * (t78 * t63 + t20 * t66);
-        let c_cross_leg3 = (t61 - (0.0576 + t70) - 0.3136 * t72) / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t77 * (t78 * t66 - t20 * t63);
+        let t65 = 4.166666666666667 / s_cross_leg3;
+        let t66 = 1.0 / t54;
+        let t69 = 0.48 * (t20 + 0.8660254037844387 * t11);
+        let minus_c_arm_leg3 = t66 * (t69 * t56 + t26 * t59);
+        let c_cross_leg3 = (-0.0576 + t55) / t63;
+        let s_arm_leg3 = t66 * (t69 * t59 - t26 * t56);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t98 = t69 * (1.7857142857142858 / c_rod_leg3);
-        let garm_vy_leg3 = t76
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t98);
+        let t85 = t13 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vy_leg3 = t65
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t85);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t108 = t30 * (1.7857142857142858 / c_rod_leg2);
-        let garm_vy_leg2 = t50 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t108);
+        let t95 = t14 * (1.7857142857142858 / c_rod_leg2);
+        let garm_vy_leg2 = t47 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t95);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t76;
-        let garm_vx_leg2 = t50 * (0.8660254037844387 * t108 - 0.5 * c_armcross_leg2);
-        let t123 = pose[0] + 0.05 - 0.2;
-        let t124 = t123 * t123;
-        let t126 = 0.2304 * (t124 + t8);
-        let t127 = pose[1] * pose[1];
-        let t129 = t124 + t127 + t8;
-        let t131 = t129 - 0.3136 + 0.0576;
-        let t133 = t126 - t131 * t131;
-        ::overact::guard::reach(t133, "leg1")?;
-        let t134 = ::overact::math::sqrt(t133);
-        let t137 = 1.0 - 3.188775510204082 * t127;
-        ::overact::guard::reach(t137, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t137);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t65;
+        let garm_vx_leg2 = t47 * (0.8660254037844387 * t95 - 0.5 * c_armcross_leg2);
+        let t109 = t0 - 0.2;
+        let t111 = t109 * t109 + t7;
+        let t112 = 0.2304 * t111;
+        let t113 = pose[1] * pose[1];
+        let t115 = t111 + t113 - 0.3136;
+        let t116 = t115 + 0.0576;
+        let t118 = t112 - t116 * t116;
+        ::overact::guard::reach(t118, "leg1")?;
+        let t119 = ::overact::math::sqrt(t118);
+        let t121 = 1.0 - 3.188775510204082 * t113;
+        ::overact::guard::reach(t121, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t121);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let s_cross_leg1 = 2.0833333333333335 * t134 / (0.56 * c_rod_leg1);
+        let t123 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t119 / t123;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t141 = 4.166666666666667 / s_cross_leg1;
+        let t125 = 4.166666666666667 / s_cross_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let garm_vy_leg1 = t141 * (pose[1] * grod_vy_leg1);
-        let t146 = 1.0 / t126;
-        let t147 = 0.48 * t123;
-        let c_arm_leg1 = t146 * (t147 * t131 - t20 * t134);
-        let minus_s_arm_leg1 = t146 * (t20 * t131 + t147 * t134);
-        let c_cross_leg1 = (t129 - (0.0576 + t127) - 0.3136 * t137)
-            / (0.2688 * c_rod_leg1);
+        let garm_vy_leg1 = t125 * (pose[1] * grod_vy_leg1);
+        let t130 = 1.0 / t112;
+        let t131 = 0.48 * t109;
+        let c_arm_leg1 = t130 * (t131 * t116 - t26 * t119);
+        let minus_s_arm_leg1 = t130 * (t26 * t116 + t131 * t119);
+        let c_cross_leg1 = (-0.0576 + t115) / t123;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t141;
-        let t167 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t125;
+        let t147 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t141;
-        let garm_vx_leg3 = t76
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t98);
-        let t179 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t184 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t186 = garm_vx_leg2 * t167 - garm_vy_leg2 * t179 - minus_garm_vz_leg2 * t184;
-        ::overact::guard::platform(t186, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t186, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t186, 87.78853732233405, "kept actuators")?;
-        let t187 = 1.0 / t186;
-        let t195 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t187 * acceleration[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t125;
+        let garm_vx_leg3 = t65
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t85);
+        let t159 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t164 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t166 = garm_vx_leg2 * t147 - garm_vy_leg2 * t159 - minus_garm_vz_leg2 * t164;
+        ::overact::guard::platform(t166, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t166, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t166, 87.78853732233405, "kept actuators")?;
+        let t167 = 1.0 / t166;
+        let t175 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t167 * acceleration[0]
             - (minus_garm_vz_leg2 * garm_vx_leg3 - garm_vx_leg2 * minus_garm_vz_leg3)
-                * t187 * acceleration[1];
-        let t200 = acceleration[2] + 9.81;
-        let t221 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t187 * acceleration[1]
+                * t167 * acceleration[1];
+        let t180 = acceleration[2] + 9.81;
+        let t201 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t167 * acceleration[1]
             - (garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2)
-                * t187 * acceleration[0];
+                * t167 * acceleration[0];
         Ok([
             [
-                t195
-                    + (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t187
-                        * t200,
+                t175
+                    + (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t167
+                        * t180,
             ],
             [
-                t167 * t187 * acceleration[0] - t179 * t187 * acceleration[1]
-                    + t184 * t187 * t200,
+                t147 * t167 * acceleration[0] - t159 * t167 * acceleration[1]
+                    + t164 * t167 * t180,
             ],
             [
-                t221
-                    - (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t187
-                        * t200,
+                t201
+                    - (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t167
+                        * t180,
             ],
         ])
     }
@@ -7609,7 +7320,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 179 operations (64 additions, 100 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 182 intermediates.
+    /// 159 operations (56 additions, 88 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 162 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7617,104 +7328,106 @@ impl Delta {
         pose: &[f64; 3],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t22 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t40;
-        let t44 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t47 = pose[0] - 0.025 + 0.1;
-        let t48 = 0.5 * t47;
-        let t49 = 0.8660254037844387 * t44 - t48;
-        let t52 = 0.2304 * (t49 * t49 + t3);
-        let t53 = t47 * t47;
-        let t56 = t53 + t44 * t44 + t3;
-        let t58 = t56 - 0.3136 + 0.0576;
-        let t60 = t52 - t58 * t58;
-        ::overact::guard::reach(t60, "leg2")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t63 = 0.8660254037844387 * t47;
-        let t65 = t63 + 0.5 * t44;
-        let t66 = t65 * t65;
-        let t68 = 1.0 - 3.188775510204082 * t66;
-        ::overact::guard::reach(t68, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t37 = t0 + 0.025;
+        let t38 = t37 * t37;
+        let t40 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t43 = t38 + t40 * t40 + t3;
+        let t46 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t48 = 0.8660254037844387 * t37 - 0.5 * t46;
+        let t49 = pose[1] + t48;
+        let t50 = t49 * t49;
+        let t52 = 0.2304 * (t43 - t50);
+        let t53 = t43 - 0.3136;
+        let t54 = t53 + 0.0576;
+        let t56 = t52 - t54 * t54;
+        ::overact::guard::reach(t56, "leg2")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t59 = 1.0 - 3.188775510204082 * t50;
+        ::overact::guard::reach(t59, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t59);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t61 / (0.56 * c_rod_leg2);
+        let t61 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t57 / t61;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t72 = 4.166666666666667 / s_cross_leg2;
-        let t74 = t65 * (1.7857142857142858 / c_rod_leg2);
-        let t76 = 1.0 / t52;
-        let t77 = 0.48 * t49;
-        let c_arm_leg2 = t76 * (t77 * t58 - t14 * t61);
-        let c_cross_leg2 = (t56 - (0.0576 + t66) - 0.3136 * t68) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t76 * (t14 * t58 + t77 * t61);
+        let t63 = 4.166666666666667 / s_cross_leg2;
+        let t65 = t49 * (1.7857142857142858 / c_rod_leg2);
+        let t67 = 1.0 / t52;
+        let t69 = 0.5 * t37;
+        let t71 = 0.48 * (0.8660254037844387 * t40 - t69);
+        let c_arm_leg2 = t67 * (t71 * t54 - t13 * t57);
+        let c_cross_leg2 = (-0.0576 + t53) / t61;
+        let minus_s_arm_leg2 = t67 * (t13 * t54 + t71 * t57);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
-        let t101 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t103 = t48 + 0.8660254037844387 * t101;
-        let t106 = 0.2304 * (t103 * t103 + t3);
-        let t109 = t53 + t101 * t101 + t3;
-        let t111 = t109 - 0.3136 + 0.0576;
-        let t113 = t106 - t111 * t111;
-        ::overact::guard::reach(t113, "leg3")?;
-        let t114 = ::overact::math::sqrt(t113);
-        let t117 = t63 - 0.5 * t101;
-        let t118 = t117 * t117;
-        let t120 = 1.0 - 3.188775510204082 * t118;
-        ::overact::guard::reach(t120, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        let garm_vx_leg2 = t63 * (0.8660254037844387 * t65 - 0.5 * c_armcross_leg2);
+        let t92 = t38 + t46 * t46 + t3;
+        let t93 = t48 * t48;
+        let t95 = 0.2304 * (t92 - t93);
+        let t96 = t92 - 0.3136;
+        let t97 = t96 + 0.0576;
+        let t99 = t95 - t97 * t97;
+        ::overact::guard::reach(t99, "leg3")?;
+        let t100 = ::overact::math::sqrt(t99);
+        let t102 = 1.0 - 3.188775510204082 * t93;
+        ::overact::guard::reach(t102, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t102);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t114 / (0.56 * c_rod_leg3);
+        let t104 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t100 / t104;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t124 = 4.166666666666667 / s_cross_leg3;
-        let t125 = 1.0 / t106;
-        let t126 = 0.48 * t103;
-        let minus_c_arm_leg3 = t125 * (t126 * t111 + t14 * t114);
-        let c_cross_leg3 = (t109 - (0.0576 + t118) - 0.3136 * t120)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t125 * (t126 * t114 - t14 * t111);
+        let t106 = 4.166666666666667 / s_cross_leg3;
+        let t107 = 1.0 / t95;
+        let t110 = 0.48 * (t69 + 0.8660254037844387 * t46);
+        let minus_c_arm_leg3 = t107 * (t110 * t97 + t13 * t100);
+        let c_cross_leg3 = (-0.0576 + t96) / t104;
+        let s_arm_leg3 = t107 * (t110 * t100 - t13 * t97);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t146 = t117 * (1.7857142857142858 / c_rod_leg3);
-        let garm_vx_leg3 = t124
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t146);
+        let t126 = t48 * (1.7857142857142858 / c_rod_leg3);
+        let garm_vx_leg3 = t106
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t126);
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let garm_vy_leg1 = t40 * (pose[1] * grod_vy_leg1);
-        let garm_vy_leg2 = t72 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t74);
-        let garm_vy_leg3 = t124
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t146);
+        let garm_vy_leg1 = t34 * (pose[1] * grod_vy_leg1);
+        let garm_vy_leg2 = t63 * (0.8660254037844387 * c_armcross_leg2 + 0.5 * t65);
+        let garm_vy_leg3 = t106
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t126);
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t40;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t63;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t124;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t106;
         Ok([
             garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
                 + garm_vx_leg3 * torques[2],
@@ -7747,7 +7460,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 911 operations (356 additions, 537 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 917 intermediates.
+    /// 844 operations (339 additions, 487 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 850 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7757,430 +7470,415 @@ impl Delta {
         acceleration: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t21 = 3.188775510204082 * t8;
+        let t22 = 1.0 - t21;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = 0.24 * c_cross_leg1;
-        let t52 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
+        let t43 = 0.24 * c_cross_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t54 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t41 * (t52 + t54 * twist[1]);
-        let t58 = rate_arm_leg1 * rate_arm_leg1;
-        let t60 = c_cross_leg1 * t40;
-        let garm_vy_leg1 = t41 * t54;
-        let t63 = t49 * garm_vy_leg1;
-        let t69 = t60 * t52 + t63 * twist[1] + s_armcross_leg1 * twist[0]
+        let t48 = pose[1] * grod_vy_leg1;
+        let t49 = t48 * twist[1];
+        let rate_arm_leg1 = t35
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t49);
+        let t52 = rate_arm_leg1 * rate_arm_leg1;
+        let t59 = t43 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t69;
-        let t71 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t59;
+        let t61 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t73 = rate_rod_leg1 * rate_rod_leg1;
-        let t74 = t71 + t73;
-        let t77 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t49 * t58 + t36 * t74;
-        let t78 = pose[1] * minus_rate_cross_leg1;
-        let t82 = acceleration[1] - (minus_rate_cross_leg1 * t78 - pose[1] * t74);
-        let rate_dot_arm_leg1 = t41 * (t77 + t54 * t82);
-        let t87 = 9.81 * c_arm_leg1;
-        let t90 = 9.81 * minus_s_arm_leg1;
-        let t99 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t87
-            - parameters[2] * t90 + parameters[3] * rate_dot_arm_leg1
+        let t63 = rate_rod_leg1 * rate_rod_leg1;
+        let t69 = acceleration[1] + pose[1] * t63;
+        let t71 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t43 * t52 + 0.56 * c_rod_leg1 * (t61 + t63) + t48 * t69;
+        let rate_dot_arm_leg1 = t35 * t71;
+        let t74 = 9.81 * c_arm_leg1;
+        let t77 = 9.81 * minus_s_arm_leg1;
+        let t86 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t74
+            - parameters[2] * t77 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t102 = 3.188775510204082 * (t69 * t78);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t82;
-        let t104 = t102 - rate_dot_rod_leg1;
-        let t106 = t69 * t69;
-        let t107 = 3.188775510204082 * t106;
-        let t120 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t124 = t60 * t77 + t63 * t82 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + 0.24 * s_cross_leg1 * t58 + t120
-            + t120;
-        let t125 = 1.7857142857142858 * t124;
-        let t129 = t90 - 0.24 * t58;
-        let t132 = 0.24 * rate_dot_arm_leg1 - t87;
-        let t134 = c_cross_leg1 * t129 + s_cross_leg1 * t132;
-        let t135 = c_rod_leg1 * t134;
-        let t138 = 0.8928571428571429 * t17
-            * (parameters[14] * t104 - parameters[13] * (t107 + t73)
-                - parameters[15] * t125 + parameters[16] * t135);
-        let t141 = t102 + rate_dot_rod_leg1;
-        let t143 = t78 * t78;
-        let t144 = 3.188775510204082 * t143;
+        let t87 = 0.8928571428571429 * t16;
+        let t88 = t22 * t61;
+        let t89 = t48 * t88;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t69;
+        let t91 = t89 - rate_dot_rod_leg1;
+        let t96 = 0.24 * rate_dot_arm_leg1;
+        let t101 = 0.24 * t52;
+        let t103 = t49 * minus_rate_cross_leg1;
+        let t108 = 1.7857142857142858
+            * (c_cross_leg1 * t96 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t101 + t103 + t103);
+        let t111 = t77 - t101;
+        let t113 = t96 - t74;
+        let t115 = c_cross_leg1 * t111 + s_cross_leg1 * t113;
+        let t116 = c_rod_leg1 * t115;
+        let t121 = t89 + rate_dot_rod_leg1;
+        let t123 = t21 * t61;
+        let t127 = t48 * t108;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t124;
-        let t150 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t153 = s_rod_leg1 * t134;
-        let t156 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
-            * (parameters[13] * t141 - parameters[14] * (t144 + t73)
-                + parameters[15] * t150 - parameters[16] * t153);
-        let t158 = t120 - t124;
-        let t160 = 1.7857142857142858 * (t120 + t158);
-        let t163 = rate_rod_leg1 * (1.7857142857142858 * t69);
-        let t164 = t150 + t163;
-        let t165 = t163 + t164;
-        let t172 = c_cross_leg1 * t132 - s_cross_leg1 * t129;
-        let t176 = t138 - t156
-            + t49
-                * (parameters[13] * t160 + parameters[14] * t165 + parameters[15] * t71
-                    + parameters[16] * t172);
-        let t177 = t99 + t176;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t60 + s_armcross_leg1);
-        let t191 = parameters[8] * t160 - parameters[7] * t164 + parameters[9] * t141
-            + parameters[10] * t163 + parameters[11] * (t107 - t73);
-        let t201 = 1.7857142857142858 * t120;
-        let t210 = parameters[9] * (t73 - t144)
-            - (parameters[7] * t201 + parameters[8] * t165)
-            + parameters[10] * (1.7857142857142858 * t158) - parameters[11] * t104;
-        let t218 = s_rod_leg1
-            * (t191 - parameters[12] * t163 - parameters[14] * t172
-                + parameters[15] * t153)
+        let t131 = s_rod_leg1 * t115;
+        let t134 = t48 * t87
+            * (parameters[13] * t121 - parameters[14] * (t123 + t63)
+                + parameters[15] * t127 - parameters[16] * t131);
+        let t135 = t87
+            * (parameters[14] * t91 - parameters[13] * (t88 + t63)
+                - parameters[15] * t108 + parameters[16] * t116) - t134;
+        let t136 = 1.7857142857142858 * t103;
+        let t137 = t136 - t108;
+        let t138 = t136 + t137;
+        let t141 = rate_rod_leg1 * (1.7857142857142858 * t59);
+        let t142 = t127 + t141;
+        let t143 = t141 + t142;
+        let t150 = c_cross_leg1 * t113 - s_cross_leg1 * t111;
+        let t155 = t86 + t135
+            + t43
+                * (parameters[13] * t138 + parameters[14] * t143 + parameters[15] * t61
+                    + parameters[16] * t150);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t34);
+        let t168 = parameters[8] * t138 - parameters[7] * t142 + parameters[9] * t121
+            + parameters[10] * t141 + parameters[11] * (t88 - t63);
+        let t185 = parameters[9] * (t63 - t123)
+            - (parameters[7] * t136 + parameters[8] * t143) + parameters[10] * t137
+            - parameters[11] * t91;
+        let t193 = s_rod_leg1
+            * (t168 - parameters[12] * t141 - parameters[14] * t150
+                + parameters[15] * t131)
             + c_rod_leg1
-                * (t210 + parameters[12] * t201 + parameters[13] * t172
-                    + parameters[15] * t135);
-        let t222 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t225 = pose[0] - 0.025 + 0.1;
-        let t226 = 0.5 * t225;
-        let t227 = 0.8660254037844387 * t222 - t226;
-        let t230 = 0.2304 * (t227 * t227 + t3);
-        let t231 = t225 * t225;
-        let t234 = t231 + t222 * t222 + t3;
-        let t236 = t234 - 0.3136 + 0.0576;
-        let t238 = t230 - t236 * t236;
-        ::overact::guard::reach(t238, "leg2")?;
-        let t239 = ::overact::math::sqrt(t238);
-        let t241 = 0.8660254037844387 * t225;
-        let t243 = t241 + 0.5 * t222;
-        let t244 = t243 * t243;
-        let t246 = 1.0 - 3.188775510204082 * t244;
-        ::overact::guard::reach(t246, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t246);
+                * (t185 + parameters[12] * t136 + parameters[13] * t150
+                    + parameters[15] * t116);
+        let t196 = t0 + 0.025;
+        let t197 = t196 * t196;
+        let t199 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t202 = t197 + t199 * t199 + t3;
+        let t205 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t207 = 0.8660254037844387 * t196 - 0.5 * t205;
+        let t208 = pose[1] + t207;
+        let t209 = t208 * t208;
+        let t211 = 0.2304 * (t202 - t209);
+        let t212 = t202 - 0.3136;
+        let t213 = t212 + 0.0576;
+        let t215 = t211 - t213 * t213;
+        ::overact::guard::reach(t215, "leg2")?;
+        let t216 = ::overact::math::sqrt(t215);
+        let t217 = 3.188775510204082 * t209;
+        let t218 = 1.0 - t217;
+        ::overact::guard::reach(t218, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t218);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t248 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t239 / t248;
+        let t220 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t216 / t220;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t250 = 1.0 / s_cross_leg2;
-        let t251 = 4.166666666666667 * t250;
-        let t252 = 1.0 / c_rod_leg2;
-        let t253 = 1.7857142857142858 * t252;
-        let t254 = t243 * t253;
-        let t256 = 1.0 / t230;
-        let t257 = 0.48 * t227;
-        let c_arm_leg2 = t256 * (t257 * t236 - t14 * t239);
-        let c_cross_leg2 = (t234 - (0.0576 + t244) - 0.3136 * t246)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t256 * (t14 * t236 + t257 * t239);
+        let t222 = 1.0 / s_cross_leg2;
+        let t223 = 4.166666666666667 * t222;
+        let t224 = 1.0 / c_rod_leg2;
+        let t225 = 1.7857142857142858 * t224;
+        let t226 = t208 * t225;
+        let t228 = 1.0 / t211;
+        let t230 = 0.5 * t196;
+        let t232 = 0.48 * (0.8660254037844387 * t199 - t230);
+        let c_arm_leg2 = t228 * (t232 * t213 - t13 * t216);
+        let c_cross_leg2 = (-0.0576 + t212) / t220;
+        let minus_s_arm_leg2 = t228 * (t13 * t213 + t232 * t216);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t275 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t251 * (0.8660254037844387 * t254 - t275);
-        let t278 = 0.8660254037844387 * c_armcross_leg2;
+        let t246 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t223 * (0.8660254037844387 * t226 - t246);
+        let t249 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t287 = 0.24 * c_cross_leg2;
-        let t292 = t278 * twist[1] - t275 * twist[0] - s_armcross_leg2 * twist[2];
-        let t293 = 0.8660254037844387 * twist[0];
-        let t294 = 0.5 * twist[1];
-        let t295 = t293 + t294;
-        let rate_arm_leg2 = t251 * (t292 + t254 * t295);
-        let t299 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t253 * t295;
-        let t302 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t303 = 0.5 * s_armcross_leg2;
-        let t305 = 0.8660254037844387 * s_armcross_leg2;
-        let t310 = c_cross_leg2 * t250;
-        let t314 = t287 * (t251 * t254);
-        let t316 = t303 * twist[0] - t305 * twist[1] - c_armcross_leg2 * twist[2]
-            - t310 * t292 - t314 * t295;
-        let rate_cross_leg2 = t253 * t316;
-        let t318 = rate_cross_leg2 * rate_cross_leg2;
-        let t319 = t302 + t318;
-        let t322 = t278 * acceleration[1] - t275 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t287 * t299 + t248 * t319;
-        let t323 = 0.8660254037844387 * acceleration[0];
-        let t324 = 0.5 * acceleration[1];
-        let t327 = t243 * rate_cross_leg2;
-        let t330 = t323 + t324 + t243 * t319 - rate_cross_leg2 * t327;
-        let rate_dot_arm_leg2 = t251 * (t322 + t254 * t330);
-        let t335 = 9.81 * c_arm_leg2;
-        let t338 = 9.81 * minus_s_arm_leg2;
-        let t347 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t335
-            - parameters[19] * t338 + parameters[20] * rate_dot_arm_leg2
+        let t258 = 0.24 * c_cross_leg2;
+        let t263 = t249 * twist[1] - t246 * twist[0] - s_armcross_leg2 * twist[2];
+        let t264 = 0.8660254037844387 * twist[0];
+        let t265 = 0.5 * twist[1];
+        let t266 = t264 + t265;
+        let t267 = t226 * t266;
+        let rate_arm_leg2 = t223 * (t263 + t267);
+        let t270 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t225 * t266;
+        let t274 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t275 = 0.5 * s_armcross_leg2;
+        let t277 = 0.8660254037844387 * s_armcross_leg2;
+        let t282 = c_cross_leg2 * t222;
+        let t285 = t226 * t282;
+        let t287 = t275 * twist[0] - t277 * twist[1] - c_armcross_leg2 * twist[2]
+            - t282 * t263 - t285 * t266;
+        let rate_cross_leg2 = t225 * t287;
+        let t289 = rate_cross_leg2 * rate_cross_leg2;
+        let t293 = t249 * acceleration[1] - t246 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t258 * t270
+            + 0.56 * c_rod_leg2 * (t274 + t289);
+        let t294 = 0.8660254037844387 * acceleration[0];
+        let t295 = 0.5 * acceleration[1];
+        let t298 = t294 + t295 + t208 * t274;
+        let rate_dot_arm_leg2 = t223 * (t293 + t226 * t298);
+        let t303 = 9.81 * c_arm_leg2;
+        let t306 = 9.81 * minus_s_arm_leg2;
+        let t315 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t303
+            - parameters[19] * t306 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let minus_rate_dot_rod_leg2 = t253 * t330;
-        let t351 = 3.188775510204082 * (t316 * t327);
-        let t352 = minus_rate_dot_rod_leg2 - t351;
-        let t354 = t316 * t316;
-        let t355 = 3.188775510204082 * t354;
-        let t367 = t243 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t370 = t303 * acceleration[0] - t305 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2]
-            - (0.24 * s_cross_leg2 * t299 - t367 - t367);
-        let t374 = t370 - t310 * t322 - t314 * t330;
-        let t375 = 1.7857142857142858 * t374;
-        let t379 = t338 - 0.24 * t299;
-        let t382 = 0.24 * rate_dot_arm_leg2 - t335;
-        let t384 = c_cross_leg2 * t379 + s_cross_leg2 * t382;
-        let t385 = c_rod_leg2 * t384;
-        let t388 = 0.8928571428571429 * t239
-            * (parameters[31] * t352 - parameters[30] * (t355 + t302)
-                + parameters[32] * t375 + parameters[33] * t385);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t243;
-        let rate_dot_cross_leg2 = t253 * t374;
-        let t393 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t395 = t351 + minus_rate_dot_rod_leg2;
-        let t397 = t327 * t327;
-        let t398 = 3.188775510204082 * t397;
-        let t403 = minus_s_rod_leg2 * t384;
-        let t406 = 0.42857142857142855 * (t243 * s_cross_leg2)
-            * (parameters[32] * t393
-                - (parameters[30] * t395 + parameters[31] * (t398 + t302))
-                + parameters[33] * t403);
-        let t408 = t374 - t367;
-        let t410 = 1.7857142857142858 * (t367 - t408);
-        let t413 = minus_rate_rod_leg2 * (1.7857142857142858 * t316);
-        let t414 = t393 + t413;
-        let t415 = t413 + t414;
-        let t422 = c_cross_leg2 * t382 - s_cross_leg2 * t379;
-        let t426 = t388 + t406
-            - t287
-                * (parameters[30] * t410 - parameters[31] * t415 - parameters[32] * t318
-                    - parameters[33] * t422);
-        let t427 = t347 + t426;
-        let gcross_vx_leg2 = t253 * (t275 * t310 + t303 - 0.8660254037844387 * t314);
-        let t434 = 1.7857142857142858 * t367;
-        let t445 = parameters[24] * t434 - parameters[25] * t415
-            + parameters[26] * (t302 - t398)
-            + parameters[27] * (1.7857142857142858 * t408) - parameters[28] * t352;
-        let t462 = parameters[27] * t413
-            - (parameters[24] * t414 + parameters[25] * t410 + parameters[26] * t395)
-            + parameters[28] * (t355 - t302);
-        let t470 = c_rod_leg2
-            * (t445 - parameters[29] * t434 + parameters[30] * t422
-                + parameters[32] * t385)
+        let t316 = 0.8928571428571429 * t216;
+        let minus_rate_dot_rod_leg2 = t225 * t298;
+        let t318 = t218 * t289;
+        let t319 = t226 * t318;
+        let t320 = minus_rate_dot_rod_leg2 - t319;
+        let t330 = 0.24 * t270;
+        let t332 = t267 * rate_cross_leg2;
+        let t337 = t275 * acceleration[0] - t277 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t330 - t332 - t332)
+            - t282 * t293;
+        let t340 = 1.7857142857142858 * (t337 - t285 * t298);
+        let t343 = t306 - t330;
+        let t346 = 0.24 * rate_dot_arm_leg2 - t303;
+        let t348 = c_cross_leg2 * t343 + s_cross_leg2 * t346;
+        let t349 = c_rod_leg2 * t348;
+        let t354 = t226 * t340;
+        let t356 = t319 + minus_rate_dot_rod_leg2;
+        let t358 = t217 * t289;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t208;
+        let t364 = minus_s_rod_leg2 * t348;
+        let t367 = t226 * t316
+            * (parameters[32] * t354
+                - (parameters[30] * t356 + parameters[31] * (t358 + t274))
+                + parameters[33] * t364);
+        let t368 = t316
+            * (parameters[31] * t320 - parameters[30] * (t318 + t274)
+                + parameters[32] * t340 + parameters[33] * t349) + t367;
+        let t369 = 1.7857142857142858 * t332;
+        let t370 = t340 - t369;
+        let t371 = t369 - t370;
+        let t374 = minus_rate_rod_leg2 * (1.7857142857142858 * t287);
+        let t375 = t354 + t374;
+        let t376 = t374 + t375;
+        let t383 = c_cross_leg2 * t346 - s_cross_leg2 * t343;
+        let t388 = t315 + t368
+            - t258
+                * (parameters[30] * t371 - parameters[31] * t376 - parameters[32] * t289
+                    - parameters[33] * t383);
+        let gcross_vx_leg2 = t225 * (t246 * t282 + t275 - 0.8660254037844387 * t285);
+        let t404 = parameters[24] * t369 - parameters[25] * t376
+            + parameters[26] * (t274 - t358) + parameters[27] * t370
+            - parameters[28] * t320;
+        let t421 = parameters[27] * t374
+            - (parameters[24] * t375 + parameters[25] * t371 + parameters[26] * t356)
+            + parameters[28] * (t318 - t274);
+        let t429 = c_rod_leg2
+            * (t404 - parameters[29] * t369 + parameters[30] * t383
+                + parameters[32] * t349)
             - minus_s_rod_leg2
-                * (t462 - parameters[29] * t413 - parameters[31] * t422
-                    - parameters[32] * t403);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t252;
-        let t484 = parameters[24] * t351
-            + parameters[25] * (3.188775510204082 * (t397 - t354))
-            - parameters[26] * t393 - parameters[27] * t351 + parameters[28] * t375;
-        let t490 = t484 - parameters[29] * minus_rate_dot_rod_leg2
-            + parameters[30] * t403 - parameters[31] * t385;
-        let t495 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t497 = t226 + 0.8660254037844387 * t495;
-        let t500 = 0.2304 * (t497 * t497 + t3);
-        let t503 = t231 + t495 * t495 + t3;
-        let t505 = t503 - 0.3136 + 0.0576;
-        let t507 = t500 - t505 * t505;
-        ::overact::guard::reach(t507, "leg3")?;
-        let t508 = ::overact::math::sqrt(t507);
-        let t511 = t241 - 0.5 * t495;
-        let t512 = t511 * t511;
-        let t514 = 1.0 - 3.188775510204082 * t512;
-        ::overact::guard::reach(t514, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t514);
+                * (t421 - parameters[29] * t374 - parameters[31] * t383
+                    - parameters[32] * t364);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t224;
+        let t442 = parameters[24] * t319 + parameters[25] * (t358 - t318)
+            - parameters[26] * t354 - parameters[27] * t319 + parameters[28] * t340;
+        let t448 = t442 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t364 - parameters[31] * t349;
+        let t454 = t197 + t205 * t205 + t3;
+        let t455 = t207 * t207;
+        let t457 = 0.2304 * (t454 - t455);
+        let t458 = t454 - 0.3136;
+        let t459 = t458 + 0.0576;
+        let t461 = t457 - t459 * t459;
+        ::overact::guard::reach(t461, "leg3")?;
+        let t462 = ::overact::math::sqrt(t461);
+        let t463 = 3.188775510204082 * t455;
+        let t464 = 1.0 - t463;
+        ::overact::guard::reach(t464, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t464);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t516 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t508 / t516;
+        let t466 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t462 / t466;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t518 = 1.0 / s_cross_leg3;
-        let t519 = 4.166666666666667 * t518;
-        let t520 = 1.0 / t500;
-        let t521 = 0.48 * t497;
-        let minus_c_arm_leg3 = t520 * (t521 * t505 + t14 * t508);
-        let c_cross_leg3 = (t503 - (0.0576 + t512) - 0.3136 * t514)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t520 * (t521 * t508 - t14 * t505);
+        let t468 = 1.0 / s_cross_leg3;
+        let t469 = 4.166666666666667 * t468;
+        let t470 = 1.0 / t457;
+        let t473 = 0.48 * (t230 + 0.8660254037844387 * t205);
+        let minus_c_arm_leg3 = t470 * (t473 * t459 + t13 * t462);
+        let c_cross_leg3 = (-0.0576 + t458) / t466;
+        let s_arm_leg3 = t470 * (t473 * t462 - t13 * t459);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t539 = 0.5 * minus_c_armcross_leg3;
-        let t540 = 1.0 / c_rod_leg3;
-        let t541 = 1.7857142857142858 * t540;
-        let t542 = t511 * t541;
-        let garm_vx_leg3 = t519 * (t539 + 0.8660254037844387 * t542);
-        let t547 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t487 = 0.5 * minus_c_armcross_leg3;
+        let t488 = 1.0 / c_rod_leg3;
+        let t489 = 1.7857142857142858 * t488;
+        let t490 = t207 * t489;
+        let garm_vx_leg3 = t469 * (t487 + 0.8660254037844387 * t490);
+        let t495 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t555 = 0.24 * c_cross_leg3;
-        let t560 = t539 * twist[0] + t547 * twist[1] - s_armcross_leg3 * twist[2];
-        let t561 = t293 - t294;
-        let rate_arm_leg3 = t519 * (t560 + t542 * t561);
-        let t565 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t541 * t561;
-        let t568 = rate_rod_leg3 * rate_rod_leg3;
-        let t569 = 0.5 * s_armcross_leg3;
-        let t571 = 0.8660254037844387 * s_armcross_leg3;
-        let t576 = c_cross_leg3 * t518;
-        let t580 = t555 * (t519 * t542);
-        let t582 = t569 * twist[0] + t571 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t576 * t560 - t580 * t561;
-        let rate_cross_leg3 = t541 * t582;
-        let t584 = rate_cross_leg3 * rate_cross_leg3;
-        let t585 = t568 + t584;
-        let t588 = t539 * acceleration[0] + t547 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t555 * t565 + t516 * t585;
-        let t590 = t511 * rate_cross_leg3;
-        let t594 = t323 - t324 - (rate_cross_leg3 * t590 - t511 * t585);
-        let rate_dot_arm_leg3 = t519 * (t588 + t542 * t594);
-        let t599 = 9.81 * minus_c_arm_leg3;
-        let t602 = 9.81 * s_arm_leg3;
-        let t611 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t599
-            + parameters[36] * t602 + parameters[37] * rate_dot_arm_leg3
+        let t503 = 0.24 * c_cross_leg3;
+        let t508 = t487 * twist[0] + t495 * twist[1] - s_armcross_leg3 * twist[2];
+        let t509 = t264 - t265;
+        let t510 = t490 * t509;
+        let rate_arm_leg3 = t469 * (t508 + t510);
+        let t513 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t489 * t509;
+        let t517 = rate_rod_leg3 * rate_rod_leg3;
+        let t518 = 0.5 * s_armcross_leg3;
+        let t520 = 0.8660254037844387 * s_armcross_leg3;
+        let t525 = c_cross_leg3 * t468;
+        let t528 = t490 * t525;
+        let t530 = t518 * twist[0] + t520 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t525 * t508 - t528 * t509;
+        let rate_cross_leg3 = t489 * t530;
+        let t532 = rate_cross_leg3 * rate_cross_leg3;
+        let t536 = t487 * acceleration[0] + t495 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t503 * t513
+            + 0.56 * c_rod_leg3 * (t517 + t532);
+        let t539 = t294 - t295 + t207 * t517;
+        let rate_dot_arm_leg3 = t469 * (t536 + t490 * t539);
+        let t544 = 9.81 * minus_c_arm_leg3;
+        let t547 = 9.81 * s_arm_leg3;
+        let t556 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t544
+            + parameters[36] * t547 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t614 = 3.188775510204082 * (t582 * t590);
-        let rate_dot_rod_leg3 = t541 * t594;
-        let t616 = t614 - rate_dot_rod_leg3;
-        let t618 = t582 * t582;
-        let t619 = 3.188775510204082 * t618;
-        let t631 = t511 * (rate_cross_leg3 * rate_rod_leg3);
-        let t634 = t569 * acceleration[0] + t571 * acceleration[1]
+        let t557 = 0.8928571428571429 * t462;
+        let t558 = t464 * t532;
+        let t559 = t490 * t558;
+        let rate_dot_rod_leg3 = t489 * t539;
+        let t561 = t559 - rate_dot_rod_leg3;
+        let t571 = 0.24 * t513;
+        let t573 = t510 * rate_cross_leg3;
+        let t578 = t518 * acceleration[0] + t520 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (0.24 * s_cross_leg3 * t565 - t631 - t631);
-        let t638 = t634 - t576 * t588 - t580 * t594;
-        let t639 = 1.7857142857142858 * t638;
-        let t643 = t599 + 0.24 * rate_dot_arm_leg3;
-        let t646 = t602 + 0.24 * t565;
-        let t648 = s_cross_leg3 * t643 - c_cross_leg3 * t646;
-        let t649 = c_rod_leg3 * t648;
-        let t652 = 0.8928571428571429 * t508
-            * (parameters[48] * t616 - parameters[47] * (t619 + t568)
-                + parameters[49] * t639 + parameters[50] * t649);
-        let t655 = t614 + rate_dot_rod_leg3;
-        let t657 = t590 * t590;
-        let t658 = 3.188775510204082 * t657;
-        let s_rod_leg3 = 1.7857142857142858 * t511;
-        let rate_dot_cross_leg3 = t541 * t638;
-        let t664 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t667 = s_rod_leg3 * t648;
-        let t670 = 0.42857142857142855 * (t511 * s_cross_leg3)
-            * (parameters[47] * t655 - parameters[48] * (t658 + t568)
-                - parameters[49] * t664 - parameters[50] * t667);
-        let t672 = t638 - t631;
-        let t674 = 1.7857142857142858 * (t631 - t672);
-        let t677 = rate_rod_leg3 * (1.7857142857142858 * t582);
-        let t678 = t664 + t677;
-        let t679 = t677 + t678;
-        let t686 = s_cross_leg3 * t646 + c_cross_leg3 * t643;
-        let t690 = t652 - t670
-            - t555
-                * (parameters[47] * t674 + parameters[48] * t679 - parameters[49] * t584
-                    - parameters[50] * t686);
-        let t691 = t611 + t690;
-        let gcross_vx_leg3 = t541 * (t569 - t539 * t576 - 0.8660254037844387 * t580);
-        let t707 = parameters[41] * t678 - parameters[42] * t674 + parameters[43] * t655
-            - parameters[44] * t677 + parameters[45] * (t619 - t568);
-        let t715 = 1.7857142857142858 * t631;
-        let t726 = parameters[41] * t715 + parameters[42] * t679
-            + parameters[43] * (t568 - t658)
-            + parameters[44] * (1.7857142857142858 * t672) - parameters[45] * t616;
-        let t734 = s_rod_leg3
-            * (t707 + parameters[46] * t677 - parameters[48] * t686
-                + parameters[49] * t667)
+            - (s_cross_leg3 * t571 - t573 - t573) - t525 * t536;
+        let t581 = 1.7857142857142858 * (t578 - t528 * t539);
+        let t585 = t544 + 0.24 * rate_dot_arm_leg3;
+        let t587 = t547 + t571;
+        let t589 = s_cross_leg3 * t585 - c_cross_leg3 * t587;
+        let t590 = c_rod_leg3 * t589;
+        let t595 = t559 + rate_dot_rod_leg3;
+        let t597 = t463 * t532;
+        let t601 = t490 * t581;
+        let s_rod_leg3 = 1.7857142857142858 * t207;
+        let t605 = s_rod_leg3 * t589;
+        let t608 = t490 * t557
+            * (parameters[47] * t595 - parameters[48] * (t597 + t517)
+                - parameters[49] * t601 - parameters[50] * t605);
+        let t609 = t557
+            * (parameters[48] * t561 - parameters[47] * (t558 + t517)
+                + parameters[49] * t581 + parameters[50] * t590) - t608;
+        let t610 = 1.7857142857142858 * t573;
+        let t611 = t581 - t610;
+        let t612 = t610 - t611;
+        let t615 = rate_rod_leg3 * (1.7857142857142858 * t530);
+        let t616 = t601 + t615;
+        let t617 = t615 + t616;
+        let t624 = s_cross_leg3 * t587 + c_cross_leg3 * t585;
+        let t629 = t556 + t609
+            - t503
+                * (parameters[47] * t612 + parameters[48] * t617 - parameters[49] * t532
+                    - parameters[50] * t624);
+        let gcross_vx_leg3 = t489 * (t518 - t487 * t525 - 0.8660254037844387 * t528);
+        let t645 = parameters[41] * t616 - parameters[42] * t612 + parameters[43] * t595
+            - parameters[44] * t615 + parameters[45] * (t558 - t517);
+        let t662 = parameters[41] * t610 + parameters[42] * t617
+            + parameters[43] * (t517 - t597) + parameters[44] * t611
+            - parameters[45] * t561;
+        let t670 = s_rod_leg3
+            * (t645 + parameters[46] * t615 - parameters[48] * t624
+                + parameters[49] * t605)
             + c_rod_leg3
-                * (t726 - parameters[46] * t715 + parameters[47] * t686
-                    + parameters[49] * t649);
-        let grod_vx_leg3 = 1.5464739353293548 * t540;
-        let t748 = parameters[42] * (3.188775510204082 * (t657 - t618))
-            - parameters[41] * t614 + parameters[43] * t664 + parameters[44] * t614
-            + parameters[45] * t639;
-        let t754 = t748 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t667
-            - parameters[48] * t649;
-        let t757 = garm_vx_leg1 * t177 - minus_gcross_vx_leg1 * t218
-            + garm_vx_leg2 * t427 + gcross_vx_leg2 * t470 - minus_grod_vx_leg2 * t490
-            + garm_vx_leg3 * t691 + gcross_vx_leg3 * t734 + grod_vx_leg3 * t754;
-        let t761 = t757 + acceleration[0] * parameters[51]
+                * (t662 - parameters[46] * t610 + parameters[47] * t624
+                    + parameters[49] * t590);
+        let grod_vx_leg3 = 1.5464739353293548 * t488;
+        let t683 = parameters[42] * (t597 - t558) - parameters[41] * t559
+            + parameters[43] * t601 + parameters[44] * t559 + parameters[45] * t581;
+        let t689 = t683 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t605
+            - parameters[48] * t590;
+        let t692 = garm_vx_leg1 * t155 - minus_gcross_vx_leg1 * t193
+            + garm_vx_leg2 * t388 + gcross_vx_leg2 * t429 - minus_grod_vx_leg2 * t448
+            + garm_vx_leg3 * t629 + gcross_vx_leg3 * t670 + grod_vx_leg3 * t689;
+        let t696 = t692 + acceleration[0] * parameters[51]
             + acceleration[0] * parameters[52];
-        let t766 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t701 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t766, 14.869730172882841, "actuators")?;
-        let t767 = 1.0 / t766;
-        let garm_vy_leg2 = t251 * (t278 + 0.5 * t254);
-        let garm_vy_leg3 = t519 * (t547 - 0.5 * t542);
-        let t779 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t701, 14.869730172882841, "actuators")?;
+        let t702 = 1.0 / t701;
+        let garm_vy_leg1 = t35 * t48;
+        let garm_vy_leg2 = t223 * (t249 + 0.5 * t226);
+        let garm_vy_leg3 = t469 * (t495 - 0.5 * t490);
+        let t715 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t780 = t779 * t767;
-        let t787 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t779 * t780;
-        ::overact::guard::platform(t787, 14.869730172882846, "actuators")?;
-        let t788 = 1.0 / t787;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t63;
-        let t803 = parameters[8] * (3.188775510204082 * (t143 - t106))
-            - parameters[7] * t102 - parameters[9] * t150 + parameters[10] * t102
-            - parameters[11] * t125;
-        let t811 = garm_vy_leg1 * t177 - minus_gcross_vy_leg1 * t218
+        let t716 = t715 * t702;
+        let t723 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t715 * t716;
+        ::overact::guard::platform(t723, 14.869730172882846, "actuators")?;
+        let t724 = 1.0 / t723;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t43 * garm_vy_leg1);
+        let t739 = parameters[8] * (t123 - t88) - parameters[7] * t89
+            - parameters[9] * t127 + parameters[10] * t89 - parameters[11] * t108;
+        let t747 = garm_vy_leg1 * t155 - minus_gcross_vy_leg1 * t193
             + grod_vy_leg1
-                * (t803 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t153
-                    - parameters[14] * t135);
-        let minus_gcross_vy_leg2 = t253 * (t278 * t310 + t305 + 0.5 * t314);
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t252;
-        let gcross_vy_leg3 = t541 * (t571 - t547 * t576 + 0.5 * t580);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t540;
-        let t835 = t811 + garm_vy_leg2 * t427 - minus_gcross_vy_leg2 * t470
-            - minus_grod_vy_leg2 * t490 + garm_vy_leg3 * t691 + gcross_vy_leg3 * t734
-            - minus_grod_vy_leg3 * t754;
-        let t841 = t835 + acceleration[1] * parameters[51]
-            + acceleration[1] * parameters[52] - t761 * t780;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t251;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t519;
-        let t850 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+                * (t739 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t131
+                    - parameters[14] * t116);
+        let minus_gcross_vy_leg2 = t225 * (t249 * t282 + t277 + 0.5 * t285);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t224;
+        let gcross_vy_leg3 = t489 * (t520 - t495 * t525 + 0.5 * t528);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t488;
+        let t771 = t747 + garm_vy_leg2 * t388 - minus_gcross_vy_leg2 * t429
+            - minus_grod_vy_leg2 * t448 + garm_vy_leg3 * t629 + gcross_vy_leg3 * t670
+            - minus_grod_vy_leg3 * t689;
+        let t777 = t771 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t696 * t716;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t223;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t469;
+        let t786 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t851 = t850 * t767;
-        let t858 = t779 * t851
+        let t787 = t786 * t702;
+        let t794 = t715 * t787
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t859 = t858 * t788;
-        let t868 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t795 = t794 * t724;
+        let minus_gcross_vz_leg2 = t225 * (t222 * minus_s_arm_leg2);
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t34);
+        let gcross_vz_leg3 = t489 * (t468 * s_arm_leg3);
+        let t812 = gcross_vz_leg3 * t670 - minus_garm_vz_leg3 * t629
+            - (minus_gcross_vz_leg2 * t429 + minus_garm_vz_leg2 * t388
+                + minus_garm_vz_leg1 * t155 + minus_gcross_vz_leg1 * t193);
+        let t813 = acceleration[2] + 9.81;
+        let t830 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t850 * t851 - t858 * t859;
-        ::overact::guard::platform(t868, 34.855350201355726, "actuators")?;
-        let gcross_vz_leg2 = t253 * (s_armcross_leg2 * t310 - c_armcross_leg2);
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t60);
-        let gcross_vz_leg3 = t541 * (s_armcross_leg3 * t576 + minus_c_armcross_leg3);
-        let t888 = gcross_vz_leg2 * t470 - minus_garm_vz_leg2 * t427
-            - (minus_garm_vz_leg1 * t177 + minus_gcross_vz_leg1 * t218)
-            + gcross_vz_leg3 * t734 - minus_garm_vz_leg3 * t691;
-        let t889 = acceleration[2] + 9.81;
-        let t898 = (t888 + parameters[51] * t889 + parameters[52] * t889 + t761 * t851
-            - t859 * t841) / t868;
-        let t900 = t788 * t841 - t859 * t898;
-        let t904 = t761 * t767 - t780 * t900 + t851 * t898;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t786 * t787 - t794 * t795;
+        ::overact::guard::platform(t830, 34.855350201355726, "actuators")?;
+        let t831 = (t812 + parameters[51] * t813 + parameters[52] * t813 + t696 * t787
+            - t795 * t777) / t830;
+        let t833 = t724 * t777 - t795 * t831;
+        let t837 = t696 * t702 - t716 * t833 + t787 * t831;
         Ok([
-            garm_vx_leg1 * t904 + garm_vy_leg1 * t900 - minus_garm_vz_leg1 * t898,
-            garm_vx_leg2 * t904 + garm_vy_leg2 * t900 - minus_garm_vz_leg2 * t898,
-            garm_vx_leg3 * t904 + garm_vy_leg3 * t900 - minus_garm_vz_leg3 * t898,
+            garm_vx_leg1 * t837 + garm_vy_leg1 * t833 - minus_garm_vz_leg1 * t831,
+            garm_vx_leg2 * t837 + garm_vy_leg2 * t833 - minus_garm_vz_leg2 * t831,
+            garm_vx_leg3 * t837 + garm_vy_leg3 * t833 - minus_garm_vz_leg3 * t831,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8194,7 +7892,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 799 operations (308 additions, 482 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 817 intermediates.
+    /// 755 operations (302 additions, 444 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 773 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8224,348 +7922,329 @@ impl Delta {
         let t11 = 4.166666666666667 * t10;
         let garm_vx_leg1 = c_armcross_leg1 * t11;
         let t16 = 0.24 * c_cross_leg1;
-        let t19 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let t22 = 1.0 / c_rod_leg1;
         let t23 = s_rod_leg1 * t22;
-        let rate_arm_leg1 = t11 * (t19 + t23 * twist[1]);
+        let t24 = t23 * twist[1];
+        let rate_arm_leg1 = t11
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t24);
         let t27 = rate_arm_leg1 * rate_arm_leg1;
         let grod_vy_leg1 = 1.7857142857142858 * t22;
-        let t31 = c_cross_leg1 * t10;
-        let garm_vy_leg1 = t11 * t23;
-        let t34 = t16 * garm_vy_leg1;
-        let t40 = t31 * t19 + t34 * twist[1] + s_armcross_leg1 * twist[0]
+        let t35 = t16 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t40;
-        let t42 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
+        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t44 = rate_rod_leg1 * rate_rod_leg1;
-        let t45 = t42 + t44;
-        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t16 * t27 + 0.56 * c_rod_leg1 * t45;
-        let t49 = 0.56 * s_rod_leg1;
-        let t50 = t49 * minus_rate_cross_leg1;
-        let t54 = acceleration[1] - (minus_rate_cross_leg1 * t50 - t49 * t45);
-        let rate_dot_arm_leg1 = t11 * (t48 + t23 * t54);
-        let t59 = 9.81 * c_arm_leg1;
-        let t62 = 9.81 * s_arm_leg1;
-        let t71 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t59
-            + parameters[2] * t62 + parameters[3] * rate_dot_arm_leg1
+        let t39 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = acceleration[1] + t24 * rate_rod_leg1;
+        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t16 * t27 + 0.56 * c_rod_leg1 * (t37 + t39) + t23 * t45;
+        let rate_dot_arm_leg1 = t11 * t47;
+        let t50 = 9.81 * c_arm_leg1;
+        let t53 = 9.81 * s_arm_leg1;
+        let t62 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t50
+            + parameters[2] * t53 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t75 = 3.188775510204082 * (t40 * t50);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t54;
-        let t77 = t75 - rate_dot_rod_leg1;
-        let t79 = t40 * t40;
-        let t80 = 3.188775510204082 * t79;
-        let t90 = 0.24 * s_cross_leg1;
-        let t93 = t49 * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t97 = t31 * t48 + t34 * t54 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t90 * t27 + t93 + t93;
-        let t98 = 1.7857142857142858 * t97;
-        let t102 = 0.24 * rate_dot_arm_leg1 - t59;
-        let t105 = t62 + 0.24 * t27;
-        let t107 = s_cross_leg1 * t102 - c_cross_leg1 * t105;
-        let t108 = c_rod_leg1 * t107;
-        let t111 = 0.24 * (s_cross_leg1 * c_rod_leg1)
-            * (parameters[14] * t77 - parameters[13] * (t80 + t44) - parameters[15] * t98
-                + parameters[16] * t108);
-        let t113 = t75 + rate_dot_rod_leg1;
-        let t115 = t50 * t50;
-        let t116 = 3.188775510204082 * t115;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t97;
-        let t121 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t124 = s_rod_leg1 * t107;
-        let t127 = t90 * s_rod_leg1
-            * (parameters[13] * t113 - parameters[14] * (t116 + t44)
-                + parameters[15] * t121 - parameters[16] * t124);
-        let t129 = t93 - t97;
-        let t131 = 1.7857142857142858 * (t93 + t129);
-        let t134 = rate_rod_leg1 * (1.7857142857142858 * t40);
-        let t135 = t121 + t134;
-        let t136 = t134 + t135;
-        let t143 = s_cross_leg1 * t105 + c_cross_leg1 * t102;
-        let t147 = t111 - t127
+        let t63 = 0.24 * s_cross_leg1;
+        let t65 = t23 * t35;
+        let t67 = 3.188775510204082 * (t65 * t65);
+        let t68 = t37 - t67;
+        let t69 = t23 * t68;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
+        let t71 = t69 - rate_dot_rod_leg1;
+        let t76 = 0.24 * rate_dot_arm_leg1;
+        let t82 = t24 * minus_rate_cross_leg1;
+        let t87 = 1.7857142857142858
+            * (c_cross_leg1 * t76 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t63 * t27 + t82 + t82);
+        let t90 = t76 - t50;
+        let t93 = t53 + 0.24 * t27;
+        let t95 = s_cross_leg1 * t90 - c_cross_leg1 * t93;
+        let t96 = c_rod_leg1 * t95;
+        let t99 = c_rod_leg1 * t63
+            * (parameters[14] * t71 - parameters[13] * (t68 + t39) - parameters[15] * t87
+                + parameters[16] * t96);
+        let t101 = t69 + rate_dot_rod_leg1;
+        let t106 = t23 * t87;
+        let t109 = s_rod_leg1 * t95;
+        let t112 = t63 * s_rod_leg1
+            * (parameters[13] * t101 - parameters[14] * (t67 + t39)
+                + parameters[15] * t106 - parameters[16] * t109);
+        let t114 = 1.7857142857142858 * t82;
+        let t115 = t114 - t87;
+        let t116 = t114 + t115;
+        let t119 = rate_rod_leg1 * (1.7857142857142858 * t35);
+        let t120 = t106 + t119;
+        let t121 = t119 + t120;
+        let t128 = s_cross_leg1 * t93 + c_cross_leg1 * t90;
+        let t132 = t99 - t112
             + t16
-                * (parameters[13] * t131 + parameters[14] * t136 + parameters[15] * t42
-                    + parameters[16] * t143);
-        let t148 = t71 + t147;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t31 + s_armcross_leg1);
-        let t162 = parameters[8] * t131 - parameters[7] * t135 + parameters[9] * t113
-            + parameters[10] * t134 + parameters[11] * (t80 - t44);
-        let t172 = 1.7857142857142858 * t93;
-        let t181 = parameters[9] * (t44 - t116)
-            - (parameters[7] * t172 + parameters[8] * t136)
-            + parameters[10] * (1.7857142857142858 * t129) - parameters[11] * t77;
-        let t189 = s_rod_leg1
-            * (t162 - parameters[12] * t134 - parameters[14] * t143
-                + parameters[15] * t124)
+                * (parameters[13] * t116 + parameters[14] * t121 + parameters[15] * t37
+                    + parameters[16] * t128);
+        let t133 = t62 + t132;
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t10 * c_arm_leg1);
+        let t146 = parameters[8] * t116 - parameters[7] * t120 + parameters[9] * t101
+            + parameters[10] * t119 + parameters[11] * (t68 - t39);
+        let t163 = parameters[9] * (t39 - t67)
+            - (parameters[7] * t114 + parameters[8] * t121) + parameters[10] * t115
+            - parameters[11] * t71;
+        let t171 = s_rod_leg1
+            * (t146 - parameters[12] * t119 - parameters[14] * t128
+                + parameters[15] * t109)
             + c_rod_leg1
-                * (t181 + parameters[12] * t172 + parameters[13] * t143
-                    + parameters[15] * t108);
-        let t194 = 1.0 / c_rod_leg2;
-        let t195 = 1.7857142857142858 * t194;
+                * (t163 + parameters[12] * t114 + parameters[13] * t128
+                    + parameters[15] * t96);
+        let t176 = 1.0 / c_rod_leg2;
+        let t177 = 1.7857142857142858 * t176;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t206 = 0.5 * c_armcross_leg2;
-        let t207 = 1.0 / s_cross_leg2;
-        let t208 = c_cross_leg2 * t207;
-        let t210 = 0.5 * s_armcross_leg2;
-        let t212 = 0.24 * c_cross_leg2;
-        let t213 = 4.166666666666667 * t207;
-        let t214 = s_rod_leg2 * t194;
-        let t216 = t212 * (t213 * t214);
-        let gcross_vx_leg2 = t195 * (t206 * t208 + t210 + 0.8660254037844387 * t216);
-        let t221 = 0.8660254037844387 * s_armcross_leg2;
-        let t226 = 0.24 * s_cross_leg2;
-        let t227 = 0.8660254037844387 * c_armcross_leg2;
-        let t232 = t227 * twist[1] - t206 * twist[0] - s_armcross_leg2 * twist[2];
-        let t233 = 0.8660254037844387 * twist[0];
-        let t234 = 0.5 * twist[1];
-        let t235 = t233 + t234;
-        let rate_arm_leg2 = t213 * (t232 - t214 * t235);
-        let t239 = rate_arm_leg2 * rate_arm_leg2;
-        let t241 = 0.56 * s_rod_leg2;
-        let t250 = t210 * twist[0] - t221 * twist[1] - c_armcross_leg2 * twist[2]
-            - t208 * t232 + t216 * t235;
-        let rate_cross_leg2 = t195 * t250;
-        let minus_rate_rod_leg2 = t195 * t235;
-        let t254 = t241 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t265 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t266 = rate_cross_leg2 * rate_cross_leg2;
+        let t188 = 0.5 * c_armcross_leg2;
+        let t189 = 1.0 / s_cross_leg2;
+        let t190 = c_cross_leg2 * t189;
+        let t192 = 0.5 * s_armcross_leg2;
+        let t194 = s_rod_leg2 * t176;
+        let t195 = t190 * t194;
+        let gcross_vx_leg2 = t177 * (t188 * t190 + t192 + 0.8660254037844387 * t195);
+        let t200 = 0.8660254037844387 * s_armcross_leg2;
+        let t205 = 0.24 * s_cross_leg2;
+        let t206 = 4.166666666666667 * t189;
+        let t207 = 0.8660254037844387 * c_armcross_leg2;
+        let t212 = t207 * twist[1] - t188 * twist[0] - s_armcross_leg2 * twist[2];
+        let t213 = 0.8660254037844387 * twist[0];
+        let t214 = 0.5 * twist[1];
+        let t215 = t213 + t214;
+        let t216 = t194 * t215;
+        let rate_arm_leg2 = t206 * (t212 - t216);
+        let t219 = rate_arm_leg2 * rate_arm_leg2;
+        let t229 = t192 * twist[0] - t200 * twist[1] - c_armcross_leg2 * twist[2]
+            - t190 * t212 + t195 * t215;
+        let rate_cross_leg2 = t177 * t229;
+        let t231 = t216 * rate_cross_leg2;
+        let t240 = 0.24 * c_cross_leg2;
+        let minus_rate_rod_leg2 = t177 * t215;
+        let t244 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t245 = rate_cross_leg2 * rate_cross_leg2;
+        let t249 = t207 * acceleration[1] - t188 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t240 * t219
+            + 0.56 * c_rod_leg2 * (t244 + t245);
+        let t251 = t192 * acceleration[0] - t200 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t205 * t219 + t231 + t231)
+            - t190 * t249;
+        let t252 = 0.8660254037844387 * acceleration[0];
+        let t253 = 0.5 * acceleration[1];
+        let t256 = t252 + t253 - t216 * minus_rate_rod_leg2;
+        let t259 = 1.7857142857142858 * (t251 + t195 * t256);
+        let t260 = t194 * t259;
+        let t262 = minus_rate_rod_leg2 * (1.7857142857142858 * t229);
+        let t263 = t260 - t262;
+        let t265 = 1.7857142857142858 * t231;
+        let t266 = t265 + t259;
         let t267 = t265 + t266;
-        let t270 = t227 * acceleration[1] - t206 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t212 * t239 + 0.56 * c_rod_leg2 * t267;
-        let t272 = t210 * acceleration[0] - t221 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t226 * t239 + t254 + t254)
-            - t208 * t270;
-        let t273 = 0.8660254037844387 * acceleration[0];
-        let t274 = 0.5 * acceleration[1];
-        let t276 = t241 * rate_cross_leg2;
-        let t280 = t273 + t274 + rate_cross_leg2 * t276 - t241 * t267;
-        let t282 = t272 + t216 * t280;
-        let rate_dot_cross_leg2 = t195 * t282;
-        let t284 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t286 = minus_rate_rod_leg2 * (1.7857142857142858 * t250);
-        let t287 = t284 - t286;
-        let t289 = t282 + t254;
-        let t291 = 1.7857142857142858 * (t254 + t289);
-        let t295 = 3.188775510204082 * (t250 * t276);
-        let minus_rate_dot_rod_leg2 = t195 * t280;
-        let t297 = t295 - minus_rate_dot_rod_leg2;
-        let t302 = t250 * t250;
-        let t303 = 3.188775510204082 * t302;
-        let t306 = parameters[24] * t287 + parameters[25] * t291 + parameters[26] * t297
-            + parameters[27] * t286 + parameters[28] * (t303 - t265);
-        let t309 = 9.81 * s_arm_leg2;
-        let t311 = t309 + 0.24 * t239;
-        let rate_dot_arm_leg2 = t213 * (t270 - t214 * t280);
-        let t317 = 9.81 * c_arm_leg2;
-        let t318 = 0.24 * rate_dot_arm_leg2 - t317;
-        let t320 = s_cross_leg2 * t311 + c_cross_leg2 * t318;
-        let t325 = s_cross_leg2 * t318 - c_cross_leg2 * t311;
-        let t326 = s_rod_leg2 * t325;
-        let t330 = t287 - t286;
-        let t332 = 1.7857142857142858 * t254;
-        let t335 = t276 * t276;
-        let t336 = 3.188775510204082 * t335;
-        let t343 = t295 + minus_rate_dot_rod_leg2;
-        let t345 = parameters[25] * t330 - parameters[24] * t332
-            + parameters[26] * (t265 - t336)
-            + parameters[27] * (1.7857142857142858 * t289) - parameters[28] * t343;
-        let t350 = c_rod_leg2 * t325;
-        let t354 = s_rod_leg2
-            * (t306 - parameters[29] * t286 - parameters[31] * t320
-                + parameters[32] * t326)
+        let t270 = t194 * t229;
+        let t272 = 3.188775510204082 * (t270 * t270);
+        let t273 = t245 - t272;
+        let t274 = t194 * t273;
+        let minus_rate_dot_rod_leg2 = t177 * t256;
+        let t276 = t274 - minus_rate_dot_rod_leg2;
+        let t283 = parameters[24] * t263 + parameters[25] * t267 + parameters[26] * t276
+            + parameters[27] * t262 + parameters[28] * (t273 - t244);
+        let t286 = 9.81 * s_arm_leg2;
+        let t288 = t286 + 0.24 * t219;
+        let rate_dot_arm_leg2 = t206 * (t249 - t194 * t256);
+        let t294 = 9.81 * c_arm_leg2;
+        let t295 = 0.24 * rate_dot_arm_leg2 - t294;
+        let t297 = s_cross_leg2 * t288 + c_cross_leg2 * t295;
+        let t302 = s_cross_leg2 * t295 - c_cross_leg2 * t288;
+        let t303 = s_rod_leg2 * t302;
+        let t307 = t263 - t262;
+        let t316 = t274 + minus_rate_dot_rod_leg2;
+        let t318 = parameters[25] * t307 - parameters[24] * t265
+            + parameters[26] * (t244 - t272) + parameters[27] * t266
+            - parameters[28] * t316;
+        let t323 = c_rod_leg2 * t302;
+        let t327 = s_rod_leg2
+            * (t283 - parameters[29] * t262 - parameters[31] * t297
+                + parameters[32] * t303)
             + c_rod_leg2
-                * (t345 + parameters[29] * t332 + parameters[30] * t320
-                    + parameters[32] * t350);
-        let minus_garm_vx_leg2 = t213 * (t206 + 0.8660254037844387 * t214);
-        let t370 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t317
-            + parameters[19] * t309 + parameters[20] * rate_dot_arm_leg2
+                * (t318 + parameters[29] * t265 + parameters[30] * t297
+                    + parameters[32] * t323);
+        let minus_garm_vx_leg2 = t206 * (t188 + 0.8660254037844387 * t194);
+        let t343 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t294
+            + parameters[19] * t286 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t377 = 1.7857142857142858 * t282;
-        let t382 = 0.24 * (s_cross_leg2 * c_rod_leg2)
-            * (parameters[31] * t343 - parameters[30] * (t303 + t265)
-                + parameters[32] * t377 + parameters[33] * t350);
-        let t392 = t226 * s_rod_leg2
-            * (parameters[30] * t297 - parameters[31] * (t336 + t265)
-                - parameters[32] * t284 - parameters[33] * t326);
-        let t402 = t382 - t392
-            - t212
-                * (parameters[31] * t330 - parameters[30] * t291 - parameters[32] * t266
-                    - parameters[33] * t320);
-        let t403 = t370 + t402;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t194;
-        let t417 = parameters[25] * (3.188775510204082 * (t335 - t302))
-            - parameters[24] * t295 + parameters[26] * t284 + parameters[27] * t295
-            + parameters[28] * t377;
-        let t423 = t417 - parameters[29] * minus_rate_dot_rod_leg2
-            - parameters[30] * t326 - parameters[31] * t350;
-        let t429 = 1.0 / s_cross_leg3;
-        let t430 = 4.166666666666667 * t429;
-        let t433 = 1.0 / c_rod_leg3;
-        let t434 = s_rod_leg3 * t433;
+        let t353 = c_rod_leg2 * t205
+            * (parameters[31] * t316 - parameters[30] * (t273 + t244)
+                + parameters[32] * t259 + parameters[33] * t323);
+        let t363 = t205 * s_rod_leg2
+            * (parameters[30] * t276 - parameters[31] * (t272 + t244)
+                - parameters[32] * t260 - parameters[33] * t303);
+        let t373 = t353 - t363
+            - t240
+                * (parameters[31] * t307 - parameters[30] * t267 - parameters[32] * t245
+                    - parameters[33] * t297);
+        let t374 = t343 + t373;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t176;
+        let t387 = parameters[25] * (t272 - t273) - parameters[24] * t274
+            + parameters[26] * t260 + parameters[27] * t274 + parameters[28] * t259;
+        let t393 = t387 - parameters[29] * minus_rate_dot_rod_leg2
+            - parameters[30] * t303 - parameters[31] * t323;
+        let t399 = 1.0 / s_cross_leg3;
+        let t400 = 4.166666666666667 * t399;
+        let t403 = 1.0 / c_rod_leg3;
+        let t404 = s_rod_leg3 * t403;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t444 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t430 * (0.8660254037844387 * t434 - t444);
-        let t447 = 0.24 * c_cross_leg3;
-        let t448 = t233 - t234;
-        let t451 = 0.8660254037844387 * c_armcross_leg3;
-        let t455 = t444 * twist[0] + t451 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t430 * (t434 * t448 - t455);
-        let t458 = rate_arm_leg3 * rate_arm_leg3;
-        let t461 = 1.7857142857142858 * t433;
-        let rate_rod_leg3 = t461 * t448;
-        let t463 = rate_rod_leg3 * rate_rod_leg3;
-        let t464 = c_cross_leg3 * t429;
-        let t466 = 0.5 * s_armcross_leg3;
-        let t468 = 0.8660254037844387 * s_armcross_leg3;
-        let t475 = t447 * (t430 * t434);
-        let t477 = t464 * t455 + t466 * twist[0] + t468 * twist[1]
-            - c_armcross_leg3 * twist[2] - t475 * t448;
-        let rate_cross_leg3 = t461 * t477;
-        let t479 = rate_cross_leg3 * rate_cross_leg3;
-        let t480 = t463 + t479;
-        let t488 = t447 * t458 + 0.56 * c_rod_leg3 * t480
-            - (t444 * acceleration[0] + t451 * acceleration[1]
+        let t414 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t400 * (0.8660254037844387 * t404 - t414);
+        let t417 = 0.24 * c_cross_leg3;
+        let t418 = t213 - t214;
+        let t419 = t404 * t418;
+        let t421 = 0.8660254037844387 * c_armcross_leg3;
+        let t425 = t414 * twist[0] + t421 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t400 * (t419 - t425);
+        let t428 = rate_arm_leg3 * rate_arm_leg3;
+        let t431 = 1.7857142857142858 * t403;
+        let rate_rod_leg3 = t431 * t418;
+        let t433 = rate_rod_leg3 * rate_rod_leg3;
+        let t434 = c_cross_leg3 * t399;
+        let t436 = 0.5 * s_armcross_leg3;
+        let t438 = 0.8660254037844387 * s_armcross_leg3;
+        let t444 = t404 * t434;
+        let t446 = t434 * t425 + t436 * twist[0] + t438 * twist[1]
+            - c_armcross_leg3 * twist[2] - t444 * t418;
+        let rate_cross_leg3 = t431 * t446;
+        let t448 = rate_cross_leg3 * rate_cross_leg3;
+        let t457 = t417 * t428 + 0.56 * c_rod_leg3 * (t433 + t448)
+            - (t414 * acceleration[0] + t421 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t490 = 0.56 * s_rod_leg3;
-        let t491 = t490 * rate_cross_leg3;
-        let t495 = t273 - t274 - (rate_cross_leg3 * t491 - t490 * t480);
-        let rate_dot_arm_leg3 = t430 * (t488 + t434 * t495);
-        let t500 = 9.81 * c_arm_leg3;
-        let t503 = 9.81 * s_arm_leg3;
-        let t512 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t500
-            + parameters[36] * t503 + parameters[37] * rate_dot_arm_leg3
+        let t460 = t252 - t253 + t419 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t400 * (t457 + t404 * t460);
+        let t465 = 9.81 * c_arm_leg3;
+        let t468 = 9.81 * s_arm_leg3;
+        let t477 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t465
+            + parameters[36] * t468 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t516 = 3.188775510204082 * (t477 * t491);
-        let rate_dot_rod_leg3 = t461 * t495;
-        let t518 = t516 - rate_dot_rod_leg3;
-        let t520 = t477 * t477;
-        let t521 = 3.188775510204082 * t520;
-        let t530 = 0.24 * s_cross_leg3;
-        let t533 = t490 * (rate_cross_leg3 * rate_rod_leg3);
-        let t538 = t466 * acceleration[0] + t468 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t530 * t458 - t533 - t533)
-            - t464 * t488;
-        let t540 = t538 - t475 * t495;
-        let t541 = 1.7857142857142858 * t540;
-        let t545 = 0.24 * rate_dot_arm_leg3 - t500;
-        let t548 = t503 + 0.24 * t458;
-        let t550 = s_cross_leg3 * t545 - c_cross_leg3 * t548;
-        let t551 = c_rod_leg3 * t550;
-        let t554 = 0.24 * (s_cross_leg3 * c_rod_leg3)
-            * (parameters[48] * t518 - parameters[47] * (t521 + t463)
-                + parameters[49] * t541 + parameters[50] * t551);
-        let t556 = t516 + rate_dot_rod_leg3;
-        let t558 = t491 * t491;
-        let t559 = 3.188775510204082 * t558;
-        let rate_dot_cross_leg3 = t461 * t540;
-        let t564 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t567 = s_rod_leg3 * t550;
-        let t570 = t530 * s_rod_leg3
-            * (parameters[47] * t556 - parameters[48] * (t559 + t463)
-                - parameters[49] * t564 - parameters[50] * t567);
-        let t572 = t540 - t533;
-        let t574 = 1.7857142857142858 * (t533 - t572);
-        let t577 = rate_rod_leg3 * (1.7857142857142858 * t477);
-        let t578 = t564 + t577;
-        let t579 = t577 + t578;
-        let t586 = s_cross_leg3 * t548 + c_cross_leg3 * t545;
-        let t590 = t554 - t570
-            - t447
-                * (parameters[47] * t574 + parameters[48] * t579 - parameters[49] * t479
-                    - parameters[50] * t586);
-        let t591 = t512 + t590;
-        let gcross_vx_leg3 = t461 * (t444 * t464 + t466 - 0.8660254037844387 * t475);
-        let t607 = parameters[41] * t578 - parameters[42] * t574 + parameters[43] * t556
-            - parameters[44] * t577 + parameters[45] * (t521 - t463);
-        let t615 = 1.7857142857142858 * t533;
-        let t626 = parameters[41] * t615 + parameters[42] * t579
-            + parameters[43] * (t463 - t559)
-            + parameters[44] * (1.7857142857142858 * t572) - parameters[45] * t518;
-        let t634 = s_rod_leg3
-            * (t607 + parameters[46] * t577 - parameters[48] * t586
-                + parameters[49] * t567)
+        let t478 = 0.24 * s_cross_leg3;
+        let t480 = t404 * t446;
+        let t482 = 3.188775510204082 * (t480 * t480);
+        let t483 = t448 - t482;
+        let t484 = t404 * t483;
+        let rate_dot_rod_leg3 = t431 * t460;
+        let t486 = t484 - rate_dot_rod_leg3;
+        let t497 = t419 * rate_cross_leg3;
+        let t502 = t436 * acceleration[0] + t438 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t478 * t428 - t497 - t497)
+            - t434 * t457;
+        let t505 = 1.7857142857142858 * (t502 - t444 * t460);
+        let t509 = 0.24 * rate_dot_arm_leg3 - t465;
+        let t512 = t468 + 0.24 * t428;
+        let t514 = s_cross_leg3 * t509 - c_cross_leg3 * t512;
+        let t515 = c_rod_leg3 * t514;
+        let t518 = c_rod_leg3 * t478
+            * (parameters[48] * t486 - parameters[47] * (t483 + t433)
+                + parameters[49] * t505 + parameters[50] * t515);
+        let t520 = t484 + rate_dot_rod_leg3;
+        let t525 = t404 * t505;
+        let t528 = s_rod_leg3 * t514;
+        let t531 = t478 * s_rod_leg3
+            * (parameters[47] * t520 - parameters[48] * (t482 + t433)
+                - parameters[49] * t525 - parameters[50] * t528);
+        let t533 = 1.7857142857142858 * t497;
+        let t534 = t505 - t533;
+        let t535 = t533 - t534;
+        let t538 = rate_rod_leg3 * (1.7857142857142858 * t446);
+        let t539 = t525 + t538;
+        let t540 = t538 + t539;
+        let t547 = s_cross_leg3 * t512 + c_cross_leg3 * t509;
+        let t551 = t518 - t531
+            - t417
+                * (parameters[47] * t535 + parameters[48] * t540 - parameters[49] * t448
+                    - parameters[50] * t547);
+        let t552 = t477 + t551;
+        let gcross_vx_leg3 = t431 * (t414 * t434 + t436 - 0.8660254037844387 * t444);
+        let t568 = parameters[41] * t539 - parameters[42] * t535 + parameters[43] * t520
+            - parameters[44] * t538 + parameters[45] * (t483 - t433);
+        let t585 = parameters[41] * t533 + parameters[42] * t540
+            + parameters[43] * (t433 - t482) + parameters[44] * t534
+            - parameters[45] * t486;
+        let t593 = s_rod_leg3
+            * (t568 + parameters[46] * t538 - parameters[48] * t547
+                + parameters[49] * t528)
             + c_rod_leg3
-                * (t626 - parameters[46] * t615 + parameters[47] * t586
-                    + parameters[49] * t551);
-        let grod_vx_leg3 = 1.5464739353293548 * t433;
-        let t648 = parameters[42] * (3.188775510204082 * (t558 - t520))
-            - parameters[41] * t516 + parameters[43] * t564 + parameters[44] * t516
-            + parameters[45] * t541;
-        let t654 = t648 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t567
-            - parameters[48] * t551;
-        let t657 = garm_vx_leg1 * t148 - minus_gcross_vx_leg1 * t189
-            + gcross_vx_leg2 * t354 - minus_garm_vx_leg2 * t403
-            - minus_grod_vx_leg2 * t423 + garm_vx_leg3 * t591 + gcross_vx_leg3 * t634
-            + grod_vx_leg3 * t654;
-        let t661 = t657 + acceleration[0] * parameters[51]
+                * (t585 - parameters[46] * t533 + parameters[47] * t547
+                    + parameters[49] * t515);
+        let grod_vx_leg3 = 1.5464739353293548 * t403;
+        let t606 = parameters[42] * (t482 - t483) - parameters[41] * t484
+            + parameters[43] * t525 + parameters[44] * t484 + parameters[45] * t505;
+        let t612 = t606 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t528
+            - parameters[48] * t515;
+        let t615 = garm_vx_leg1 * t133 - minus_gcross_vx_leg1 * t171
+            + gcross_vx_leg2 * t327 - minus_garm_vx_leg2 * t374
+            - minus_grod_vx_leg2 * t393 + garm_vx_leg3 * t552 + gcross_vx_leg3 * t593
+            + grod_vx_leg3 * t612;
+        let t619 = t615 + acceleration[0] * parameters[51]
             + acceleration[0] * parameters[52];
-        let t666 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
+        let t624 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t666, 14.869730172897302, "actuators")?;
-        let t667 = 1.0 / t666;
-        let garm_vy_leg2 = t213 * (t227 - 0.5 * t214);
-        let minus_garm_vy_leg3 = t430 * (t451 + 0.5 * t434);
-        let t679 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t624, 14.869730172897302, "actuators")?;
+        let t625 = 1.0 / t624;
+        let garm_vy_leg1 = t11 * t23;
+        let garm_vy_leg2 = t206 * (t207 - 0.5 * t194);
+        let minus_garm_vy_leg3 = t400 * (t421 + 0.5 * t404);
+        let t638 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t680 = t679 * t667;
-        let t687 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t679 * t680;
-        ::overact::guard::platform(t687, 14.869730172897306, "actuators")?;
-        let t688 = 1.0 / t687;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t34;
-        let t703 = parameters[8] * (3.188775510204082 * (t115 - t79))
-            - parameters[7] * t75 - parameters[9] * t121 + parameters[10] * t75
-            - parameters[11] * t98;
-        let t711 = garm_vy_leg1 * t148 - minus_gcross_vy_leg1 * t189
+        let t639 = t638 * t625;
+        let t646 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t638 * t639;
+        ::overact::guard::platform(t646, 14.869730172897306, "actuators")?;
+        let t647 = 1.0 / t646;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
+        let t662 = parameters[8] * (t67 - t68) - parameters[7] * t69
+            - parameters[9] * t106 + parameters[10] * t69 - parameters[11] * t87;
+        let t670 = garm_vy_leg1 * t133 - minus_gcross_vy_leg1 * t171
             + grod_vy_leg1
-                * (t703 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t124
-                    - parameters[14] * t108);
-        let gcross_vy_leg2 = t195 * (0.5 * t216 - (t227 * t208 + t221));
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t194;
-        let gcross_vy_leg3 = t461 * (t451 * t464 + t468 + 0.5 * t475);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t433;
-        let t735 = t711 + garm_vy_leg2 * t403 + gcross_vy_leg2 * t354
-            - minus_grod_vy_leg2 * t423 + gcross_vy_leg3 * t634
-            - minus_garm_vy_leg3 * t591 - minus_grod_vy_leg3 * t654;
-        let t741 = t735 + acceleration[1] * parameters[51]
-            + acceleration[1] * parameters[52] - t661 * t680;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t430;
+                * (t662 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t109
+                    - parameters[14] * t96);
+        let gcross_vy_leg2 = t177 * (0.5 * t195 - (t207 * t190 + t200));
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t176;
+        let gcross_vy_leg3 = t431 * (t421 * t434 + t438 + 0.5 * t444);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t403;
+        let t694 = t670 + garm_vy_leg2 * t374 + gcross_vy_leg2 * t327
+            - minus_grod_vy_leg2 * t393 + gcross_vy_leg3 * t593
+            - minus_garm_vy_leg3 * t552 - minus_grod_vy_leg3 * t612;
+        let t700 = t694 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t619 * t639;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t400;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t213;
-        let t755 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t206;
+        let t714 = minus_garm_vx_leg2 * minus_garm_vz_leg2
             - garm_vx_leg1 * minus_garm_vz_leg1 - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t756 = t755 * t667;
-        let t758 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+        let t715 = t714 * t625;
+        let t717 = minus_garm_vy_leg3 * minus_garm_vz_leg3
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            - t679 * t756;
-        let t759 = t758 * t688;
-        let t768 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            - t638 * t715;
+        let t718 = t717 * t647;
+        let gcross_vz_leg2 = t177 * (t189 * s_arm_leg2);
+        let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t10 * s_arm_leg1);
+        let gcross_vz_leg3 = t431 * (t399 * s_arm_leg3);
+        let t735 = gcross_vz_leg2 * t327 - minus_garm_vz_leg2 * t374
+            - (minus_garm_vz_leg1 * t133 - minus_minus_gcross_vz_leg1 * t171)
+            + gcross_vz_leg3 * t593 - minus_garm_vz_leg3 * t552;
+        let t736 = acceleration[2] + 9.81;
+        let t753 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t755 * t756 - t758 * t759;
-        ::overact::guard::platform(t768, 34.8553502013929, "actuators")?;
-        let gcross_vz_leg2 = t195 * (s_armcross_leg2 * t208 - c_armcross_leg2);
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t31);
-        let gcross_vz_leg3 = t461 * (s_armcross_leg3 * t464 - c_armcross_leg3);
-        let t788 = gcross_vz_leg2 * t354 - minus_garm_vz_leg2 * t403
-            - (minus_garm_vz_leg1 * t148 + minus_gcross_vz_leg1 * t189)
-            + gcross_vz_leg3 * t634 - minus_garm_vz_leg3 * t591;
-        let t789 = acceleration[2] + 9.81;
-        let t798 = (t788 + parameters[51] * t789 + parameters[52] * t789 - t661 * t756
-            - t759 * t741) / t768;
-        let t800 = t688 * t741 - t759 * t798;
-        let t804 = t661 * t667 - t680 * t800 - t756 * t798;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t714 * t715 - t717 * t718;
+        ::overact::guard::platform(t753, 34.8553502013929, "actuators")?;
+        let t754 = (t735 + parameters[51] * t736 + parameters[52] * t736 - t619 * t715
+            - t718 * t700) / t753;
+        let t756 = t647 * t700 - t718 * t754;
+        let t760 = t619 * t625 - t639 * t756 - t715 * t754;
         Ok([
-            garm_vx_leg1 * t804 + garm_vy_leg1 * t800 - minus_garm_vz_leg1 * t798,
-            garm_vy_leg2 * t800 - minus_garm_vx_leg2 * t804 - minus_garm_vz_leg2 * t798,
-            garm_vx_leg3 * t804 - minus_garm_vy_leg3 * t800 - minus_garm_vz_leg3 * t798,
+            garm_vx_leg1 * t760 + garm_vy_leg1 * t756 - minus_garm_vz_leg1 * t754,
+            garm_vy_leg2 * t756 - minus_garm_vx_leg2 * t760 - minus_garm_vz_leg2 * t754,
+            garm_vx_leg3 * t760 - minus_garm_vy_leg3 * t756 - minus_garm_vz_leg3 * t754,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8579,7 +8258,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 966 operations (380 additions, 568 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 972 intermediates.
+    /// 895 operations (360 additions, 517 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 901 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8591,461 +8270,439 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t21 = 3.188775510204082 * t8;
+        let t22 = 1.0 - t21;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t45 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t48 = pose[0] - 0.025 + 0.1;
-        let t49 = 0.5 * t48;
-        let t50 = 0.8660254037844387 * t45 - t49;
-        let t53 = 0.2304 * (t50 * t50 + t3);
-        let t54 = t48 * t48;
-        let t57 = t54 + t45 * t45 + t3;
-        let t59 = t57 - 0.3136 + 0.0576;
-        let t61 = t53 - t59 * t59;
-        ::overact::guard::reach(t61, "leg2")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.8660254037844387 * t48;
-        let t66 = t64 + 0.5 * t45;
-        let t67 = t66 * t66;
-        let t69 = 1.0 - 3.188775510204082 * t67;
-        ::overact::guard::reach(t69, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t69);
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t38 = t0 + 0.025;
+        let t39 = t38 * t38;
+        let t41 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t44 = t39 + t41 * t41 + t3;
+        let t47 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t49 = 0.8660254037844387 * t38 - 0.5 * t47;
+        let t50 = pose[1] + t49;
+        let t51 = t50 * t50;
+        let t53 = 0.2304 * (t44 - t51);
+        let t54 = t44 - 0.3136;
+        let t55 = t54 + 0.0576;
+        let t57 = t53 - t55 * t55;
+        ::overact::guard::reach(t57, "leg2")?;
+        let t58 = ::overact::math::sqrt(t57);
+        let t59 = 3.188775510204082 * t51;
+        let t60 = 1.0 - t59;
+        ::overact::guard::reach(t60, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t60);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t71 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t62 / t71;
+        let t62 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t58 / t62;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t73 = 1.0 / s_cross_leg2;
-        let t74 = 4.166666666666667 * t73;
-        let t75 = 1.0 / c_rod_leg2;
-        let t76 = 1.7857142857142858 * t75;
-        let t77 = t66 * t76;
-        let t79 = 1.0 / t53;
-        let t80 = 0.48 * t50;
-        let c_arm_leg2 = t79 * (t80 * t59 - t14 * t62);
-        let c_cross_leg2 = (t57 - (0.0576 + t67) - 0.3136 * t69) / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t79 * (t14 * t59 + t80 * t62);
+        let t64 = 1.0 / s_cross_leg2;
+        let t65 = 4.166666666666667 * t64;
+        let t66 = 1.0 / c_rod_leg2;
+        let t67 = 1.7857142857142858 * t66;
+        let t68 = t50 * t67;
+        let t70 = 1.0 / t53;
+        let t72 = 0.5 * t38;
+        let t74 = 0.48 * (0.8660254037844387 * t41 - t72);
+        let c_arm_leg2 = t70 * (t74 * t55 - t13 * t58);
+        let c_cross_leg2 = (-0.0576 + t54) / t62;
+        let minus_s_arm_leg2 = t70 * (t13 * t55 + t74 * t58);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t98 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t74 * (0.8660254037844387 * t77 - t98);
-        let t104 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t106 = t49 + 0.8660254037844387 * t104;
-        let t109 = 0.2304 * (t106 * t106 + t3);
-        let t112 = t54 + t104 * t104 + t3;
-        let t114 = t112 - 0.3136 + 0.0576;
-        let t116 = t109 - t114 * t114;
-        ::overact::guard::reach(t116, "leg3")?;
-        let t117 = ::overact::math::sqrt(t116);
-        let t120 = t64 - 0.5 * t104;
-        let t121 = t120 * t120;
-        let t123 = 1.0 - 3.188775510204082 * t121;
-        ::overact::guard::reach(t123, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t123);
+        let t88 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t65 * (0.8660254037844387 * t68 - t88);
+        let t95 = t39 + t47 * t47 + t3;
+        let t96 = t49 * t49;
+        let t98 = 0.2304 * (t95 - t96);
+        let t99 = t95 - 0.3136;
+        let t100 = t99 + 0.0576;
+        let t102 = t98 - t100 * t100;
+        ::overact::guard::reach(t102, "leg3")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t104 = 3.188775510204082 * t96;
+        let t105 = 1.0 - t104;
+        ::overact::guard::reach(t105, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t105);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t125 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t117 / t125;
+        let t107 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t103 / t107;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t127 = 1.0 / s_cross_leg3;
-        let t128 = 4.166666666666667 * t127;
-        let t129 = 1.0 / t109;
-        let t130 = 0.48 * t106;
-        let minus_c_arm_leg3 = t129 * (t130 * t114 + t14 * t117);
-        let c_cross_leg3 = (t112 - (0.0576 + t121) - 0.3136 * t123)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t129 * (t130 * t117 - t14 * t114);
+        let t109 = 1.0 / s_cross_leg3;
+        let t110 = 4.166666666666667 * t109;
+        let t111 = 1.0 / t98;
+        let t114 = 0.48 * (t72 + 0.8660254037844387 * t47);
+        let minus_c_arm_leg3 = t111 * (t114 * t100 + t13 * t103);
+        let c_cross_leg3 = (-0.0576 + t99) / t107;
+        let s_arm_leg3 = t111 * (t114 * t103 - t13 * t100);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t148 = 0.5 * minus_c_armcross_leg3;
-        let t149 = 1.0 / c_rod_leg3;
-        let t150 = 1.7857142857142858 * t149;
-        let t151 = t120 * t150;
-        let garm_vx_leg3 = t128 * (t148 + 0.8660254037844387 * t151);
-        let t156 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t128 = 0.5 * minus_c_armcross_leg3;
+        let t129 = 1.0 / c_rod_leg3;
+        let t130 = 1.7857142857142858 * t129;
+        let t131 = t49 * t130;
+        let garm_vx_leg3 = t110 * (t128 + 0.8660254037844387 * t131);
+        let t136 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t156, 14.869730172882841, "actuators")?;
-        let t157 = 1.0 / t156;
-        let t159 = 9.81 * c_arm_leg1;
-        let t162 = 9.81 * minus_s_arm_leg1;
-        let t171 = actuator_accelerations[0] * parameters[0] - t159 * parameters[1]
-            - t162 * parameters[2] + actuator_accelerations[0] * parameters[3]
+        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
+        let t137 = 1.0 / t136;
+        let t139 = 9.81 * c_arm_leg1;
+        let t142 = 9.81 * minus_s_arm_leg1;
+        let t151 = actuator_accelerations[0] * parameters[0] - t139 * parameters[1]
+            - t142 * parameters[2] + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t173 = c_cross_leg1 * t40;
-        let t178 = garm_vx_leg1 * actuator_velocities[0]
-            + garm_vx_leg2 * actuator_velocities[1]
-            + garm_vx_leg3 * actuator_velocities[2];
+        let t152 = 0.8928571428571429 * t16;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t181 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t41 * t181;
-        let t184 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t74 * (t184 + 0.5 * t77);
-        let t190 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t128 * (t190 - 0.5 * t151);
-        let t195 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t196 = t195 * t157;
-        let t203 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t195 * t196;
-        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t203, 14.869730172882846, "actuators")?;
-        let t204 = 1.0 / t203;
-        let t211 = garm_vy_leg1 * actuator_velocities[0]
-            + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t178 * t196;
+        let t154 = pose[1] * grod_vy_leg1;
+        let t155 = 0.24 * c_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
+        let t164 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2];
+        let garm_vy_leg1 = t35 * t154;
+        let t168 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t65 * (t168 + 0.5 * t68);
+        let t174 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t110 * (t174 - 0.5 * t131);
+        let t179 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t180 = t179 * t137;
+        let t187 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t179 * t180;
+        ::overact::guard::platform(t187, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t187, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t187, 14.869730172882846, "actuators")?;
+        let t188 = 1.0 / t187;
+        let t195 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2] - t164 * t180;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t74;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t65;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t128;
-        let t229 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t110;
+        let t210 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t230 = t229 * t157;
-        let t237 = t195 * t230
+        let t211 = t210 * t137;
+        let t218 = t179 * t211
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t238 = t237 * t204;
-        let t247 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t219 = t218 * t188;
+        let t228 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t229 * t230 - t237 * t238;
-        ::overact::guard::platform(t247, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t247, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t247, 34.855350201355726, "actuators")?;
-        let t248 = 1.0 / t247;
-        let t258 = t248
-            * (t178 * t230
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t210 * t211 - t218 * t219;
+        ::overact::guard::platform(t228, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t228, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t228, 34.855350201355726, "actuators")?;
+        let t229 = 1.0 / t228;
+        let t239 = t229
+            * (t164 * t211
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t238 * t211);
-        let t260 = t204 * t211 - t238 * t258;
-        let t264 = t178 * t157 - t196 * t260 + t230 * t258;
-        let t269 = 0.24 * c_cross_leg1;
-        let t270 = t269 * garm_vy_leg1;
-        let t276 = t173 * (c_armcross_leg1 * t264 - s_armcross_leg1 * t258) + t270 * t260
-            + s_armcross_leg1 * t264 + c_armcross_leg1 * t258;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t276;
-        let t278 = pose[1] * minus_rate_cross_leg1;
-        let t280 = 3.188775510204082 * (t276 * t278);
-        let t281 = actuator_velocities[0] * actuator_velocities[0];
-        let t283 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t260;
-        let t285 = rate_rod_leg1 * rate_rod_leg1;
-        let t286 = t283 + t285;
-        let t288 = t269 * t281 + t36 * t286;
-        let t291 = minus_rate_cross_leg1 * t278 - pose[1] * t286;
-        let rate_dot_arm_leg1 = t41 * (t288 - t181 * t291);
-        let t295 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t297 = 0.24 * c_cross_leg2;
-        let t298 = actuator_velocities[1] * actuator_velocities[1];
-        let t300 = 0.8660254037844387 * t264;
-        let t301 = 0.5 * t260;
-        let t302 = t300 + t301;
-        let minus_rate_rod_leg2 = t76 * t302;
-        let t304 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t305 = 0.5 * s_armcross_leg2;
-        let t307 = 0.8660254037844387 * s_armcross_leg2;
-        let t312 = c_cross_leg2 * t73;
-        let t319 = t305 * t264 - t307 * t260 - c_armcross_leg2 * t258
-            - t312 * (t184 * t260 - t98 * t264 - s_armcross_leg2 * t258);
-        let t321 = t297 * (t74 * t77);
-        let t323 = t319 - t321 * t302;
-        let rate_cross_leg2 = t76 * t323;
-        let t325 = rate_cross_leg2 * rate_cross_leg2;
-        let t326 = t304 + t325;
-        let t328 = t297 * t298 + t71 * t326;
-        let t330 = t66 * rate_cross_leg2;
-        let t332 = t66 * t326 - rate_cross_leg2 * t330;
-        let rate_dot_arm_leg2 = t74 * (t328 + t77 * t332);
-        let t336 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t339 = 0.24 * c_cross_leg3;
-        let t340 = actuator_velocities[2] * actuator_velocities[2];
-        let t342 = t300 - t301;
-        let rate_rod_leg3 = t150 * t342;
-        let t344 = rate_rod_leg3 * rate_rod_leg3;
-        let t345 = 0.5 * s_armcross_leg3;
-        let t347 = 0.8660254037844387 * s_armcross_leg3;
-        let t352 = c_cross_leg3 * t127;
-        let t359 = t345 * t264 + t347 * t260 + minus_c_armcross_leg3 * t258
-            - t352 * (t148 * t264 + t190 * t260 - s_armcross_leg3 * t258);
-        let t361 = t339 * (t128 * t151);
-        let t363 = t359 - t361 * t342;
-        let rate_cross_leg3 = t150 * t363;
-        let t365 = rate_cross_leg3 * rate_cross_leg3;
-        let t366 = t344 + t365;
-        let t368 = t339 * t340 + t125 * t366;
-        let t369 = t120 * rate_cross_leg3;
-        let t372 = rate_cross_leg3 * t369 - t120 * t366;
-        let rate_dot_arm_leg3 = t128 * (t368 - t151 * t372);
-        let t376 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t383 = garm_vx_leg1 * t295 + garm_vx_leg2 * t336 + garm_vx_leg3 * t376;
-        let t385 = garm_vy_leg1 * t295 + garm_vy_leg2 * t336 + garm_vy_leg3 * t376
-            - t196 * t383;
-        let t396 = t248
-            * (t230 * t383
-                - (minus_garm_vz_leg1 * t295 + minus_garm_vz_leg2 * t336
-                    + minus_garm_vz_leg3 * t376) - t238 * t385);
-        let t398 = t204 * t385 - t238 * t396;
-        let t399 = t398 - t291;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t399;
-        let t401 = t280 - rate_dot_rod_leg1;
-        let t403 = t276 * t276;
-        let t404 = 3.188775510204082 * t403;
-        let t412 = t157 * t383 - t196 * t398 + t230 * t396;
-        let t426 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t430 = t173 * (c_armcross_leg1 * t412 - s_armcross_leg1 * t396 + t288)
-            + t270 * t399 + s_armcross_leg1 * t412 + c_armcross_leg1 * t396
-            + 0.24 * s_cross_leg1 * t281 + t426 + t426;
-        let t431 = 1.7857142857142858 * t430;
-        let t435 = t162 - 0.24 * t281;
-        let t438 = 0.24 * actuator_accelerations[0] - t159;
-        let t440 = c_cross_leg1 * t435 + s_cross_leg1 * t438;
-        let t441 = c_rod_leg1 * t440;
-        let t444 = 0.8928571428571429 * t17
-            * (parameters[14] * t401 - (t404 + t285) * parameters[13]
-                - parameters[15] * t431 + parameters[16] * t441);
-        let t447 = t280 + rate_dot_rod_leg1;
-        let t449 = t278 * t278;
-        let t450 = 3.188775510204082 * t449;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t219 * t195);
+        let t241 = t188 * t195 - t219 * t239;
+        let t245 = t164 * t137 - t180 * t241 + t211 * t239;
+        let t249 = actuator_velocities[0] * t155 + s_armcross_leg1 * t245
+            + c_armcross_leg1 * t239;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t249;
+        let t251 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t252 = t22 * t251;
+        let t253 = t154 * t252;
+        let t254 = actuator_velocities[0] * actuator_velocities[0];
+        let rate_rod_leg1 = grod_vy_leg1 * t241;
+        let t258 = rate_rod_leg1 * rate_rod_leg1;
+        let t262 = pose[1] * t258;
+        let rate_dot_arm_leg1 = t35
+            * (t155 * t254 + 0.56 * c_rod_leg1 * (t251 + t258) + t154 * t262);
+        let t266 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t268 = 0.24 * c_cross_leg2;
+        let t269 = actuator_velocities[1] * actuator_velocities[1];
+        let t272 = 0.8660254037844387 * t245;
+        let t273 = 0.5 * t241;
+        let t274 = t272 + t273;
+        let minus_rate_rod_leg2 = t67 * t274;
+        let t276 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t277 = 0.5 * s_armcross_leg2;
+        let t279 = 0.8660254037844387 * s_armcross_leg2;
+        let t284 = c_cross_leg2 * t64;
+        let t291 = t277 * t245 - t279 * t241 - c_armcross_leg2 * t239
+            - t284 * (t168 * t241 - t88 * t245 - s_armcross_leg2 * t239);
+        let t292 = t68 * t284;
+        let t294 = t291 - t292 * t274;
+        let rate_cross_leg2 = t67 * t294;
+        let t296 = rate_cross_leg2 * rate_cross_leg2;
+        let t299 = t268 * t269 + 0.56 * c_rod_leg2 * (t276 + t296);
+        let t300 = t50 * t276;
+        let rate_dot_arm_leg2 = t65 * (t299 + t68 * t300);
+        let t304 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t307 = 0.24 * c_cross_leg3;
+        let t308 = actuator_velocities[2] * actuator_velocities[2];
+        let t311 = t272 - t273;
+        let rate_rod_leg3 = t130 * t311;
+        let t313 = rate_rod_leg3 * rate_rod_leg3;
+        let t314 = 0.5 * s_armcross_leg3;
+        let t316 = 0.8660254037844387 * s_armcross_leg3;
+        let t321 = c_cross_leg3 * t109;
+        let t328 = t314 * t245 + t316 * t241 + minus_c_armcross_leg3 * t239
+            - t321 * (t128 * t245 + t174 * t241 - s_armcross_leg3 * t239);
+        let t329 = t131 * t321;
+        let t331 = t328 - t329 * t311;
+        let rate_cross_leg3 = t130 * t331;
+        let t333 = rate_cross_leg3 * rate_cross_leg3;
+        let t336 = t307 * t308 + 0.56 * c_rod_leg3 * (t313 + t333);
+        let t337 = t49 * t313;
+        let rate_dot_arm_leg3 = t110 * (t336 + t131 * t337);
+        let t341 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t348 = garm_vx_leg1 * t266 + garm_vx_leg2 * t304 + garm_vx_leg3 * t341;
+        let t350 = garm_vy_leg1 * t266 + garm_vy_leg2 * t304 + garm_vy_leg3 * t341
+            - t180 * t348;
+        let t361 = t229
+            * (t211 * t348
+                - (minus_garm_vz_leg1 * t266 + minus_garm_vz_leg2 * t304
+                    + minus_garm_vz_leg3 * t341) - t219 * t350);
+        let t363 = t188 * t350 - t219 * t361;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t363 + t262);
+        let t366 = t253 - rate_dot_rod_leg1;
+        let t371 = 0.24 * actuator_accelerations[0];
+        let t377 = t137 * t348 - t180 * t363 + t211 * t361;
+        let t381 = 0.24 * t254;
+        let t384 = pose[1] * minus_rate_cross_leg1 * rate_rod_leg1;
+        let t389 = 1.7857142857142858
+            * (c_cross_leg1 * t371 + s_armcross_leg1 * t377 + c_armcross_leg1 * t361
+                + s_cross_leg1 * t381 + t384 + t384);
+        let t392 = t142 - t381;
+        let t394 = t371 - t139;
+        let t396 = c_cross_leg1 * t392 + s_cross_leg1 * t394;
+        let t397 = c_rod_leg1 * t396;
+        let t402 = t253 + rate_dot_rod_leg1;
+        let t404 = t21 * t251;
+        let t408 = t154 * t389;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t430;
-        let t456 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t459 = s_rod_leg1 * t440;
-        let t462 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
-            * (parameters[13] * t447 - (t450 + t285) * parameters[14]
-                + parameters[15] * t456 - parameters[16] * t459);
-        let t464 = t426 - t430;
-        let t466 = 1.7857142857142858 * (t426 + t464);
-        let t469 = rate_rod_leg1 * (1.7857142857142858 * t276);
-        let t470 = t456 + t469;
-        let t471 = t469 + t470;
-        let t478 = c_cross_leg1 * t438 - s_cross_leg1 * t435;
-        let t482 = t444 - t462
-            + t269
-                * (parameters[13] * t466 + parameters[14] * t471 + t283 * parameters[15]
-                    + parameters[16] * t478);
-        let t483 = t171 + t482;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t173 + s_armcross_leg1);
-        let t497 = parameters[8] * t466 - parameters[7] * t470 + parameters[9] * t447
-            + t469 * parameters[10] + parameters[11] * (t404 - t285);
-        let t507 = 1.7857142857142858 * t426;
-        let t516 = parameters[9] * (t285 - t450)
-            - (t507 * parameters[7] + parameters[8] * t471)
-            + parameters[10] * (1.7857142857142858 * t464) - parameters[11] * t401;
-        let t524 = s_rod_leg1
-            * (t497 - t469 * parameters[12] - parameters[14] * t478
-                + parameters[15] * t459)
+        let t412 = s_rod_leg1 * t396;
+        let t415 = t152 * t154
+            * (parameters[13] * t402 - (t404 + t258) * parameters[14]
+                + parameters[15] * t408 - parameters[16] * t412);
+        let t416 = t152
+            * (parameters[14] * t366 - (t252 + t258) * parameters[13]
+                - parameters[15] * t389 + parameters[16] * t397) - t415;
+        let t417 = 1.7857142857142858 * t384;
+        let t418 = t417 - t389;
+        let t419 = t417 + t418;
+        let t422 = rate_rod_leg1 * (1.7857142857142858 * t249);
+        let t423 = t408 + t422;
+        let t424 = t422 + t423;
+        let t431 = c_cross_leg1 * t394 - s_cross_leg1 * t392;
+        let t436 = t151 + t416
+            + t155
+                * (parameters[13] * t419 + parameters[14] * t424 + t251 * parameters[15]
+                    + parameters[16] * t431);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t34);
+        let t449 = parameters[8] * t419 - parameters[7] * t423 + parameters[9] * t402
+            + t422 * parameters[10] + parameters[11] * (t252 - t258);
+        let t466 = parameters[9] * (t258 - t404)
+            - (t417 * parameters[7] + parameters[8] * t424) + parameters[10] * t418
+            - parameters[11] * t366;
+        let t474 = s_rod_leg1
+            * (t449 - t422 * parameters[12] - parameters[14] * t431
+                + parameters[15] * t412)
             + c_rod_leg1
-                * (t516 + t507 * parameters[12] + parameters[13] * t478
-                    + parameters[15] * t441);
-        let t528 = 9.81 * c_arm_leg2;
-        let t531 = 9.81 * minus_s_arm_leg2;
-        let t540 = actuator_accelerations[1] * parameters[17] - t528 * parameters[18]
-            - t531 * parameters[19] + actuator_accelerations[1] * parameters[20]
+                * (t466 + t417 * parameters[12] + parameters[13] * t431
+                    + parameters[15] * t397);
+        let t478 = 9.81 * c_arm_leg2;
+        let t481 = 9.81 * minus_s_arm_leg2;
+        let t490 = actuator_accelerations[1] * parameters[17] - t478 * parameters[18]
+            - t481 * parameters[19] + actuator_accelerations[1] * parameters[20]
             + actuator_velocities[1] * parameters[21]
             + ::overact::math::signed(parameters[22], actuator_velocities[1])
             + parameters[23];
-        let t542 = 0.8660254037844387 * t412;
-        let t543 = 0.5 * t398;
-        let t545 = t542 + t543 + t332;
-        let minus_rate_dot_rod_leg2 = t76 * t545;
-        let t548 = 3.188775510204082 * (t323 * t330);
-        let t549 = minus_rate_dot_rod_leg2 - t548;
-        let t551 = t323 * t323;
-        let t552 = 3.188775510204082 * t551;
-        let t564 = t66 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t567 = t305 * t412 - t307 * t398 - c_armcross_leg2 * t396
-            - (0.24 * s_cross_leg2 * t298 - t564 - t564);
-        let t577 = t567
-            - t312 * (t184 * t398 - t98 * t412 - s_armcross_leg2 * t396 + t328)
-            - t321 * t545;
-        let t578 = 1.7857142857142858 * t577;
-        let t582 = t531 - 0.24 * t298;
-        let t585 = 0.24 * actuator_accelerations[1] - t528;
-        let t587 = c_cross_leg2 * t582 + s_cross_leg2 * t585;
-        let t588 = c_rod_leg2 * t587;
-        let t591 = 0.8928571428571429 * t62
-            * (parameters[31] * t549 - (t552 + t304) * parameters[30]
-                + parameters[32] * t578 + parameters[33] * t588);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t66;
-        let rate_dot_cross_leg2 = t76 * t577;
-        let t596 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t598 = t548 + minus_rate_dot_rod_leg2;
-        let t600 = t330 * t330;
-        let t601 = 3.188775510204082 * t600;
-        let t606 = minus_s_rod_leg2 * t587;
-        let t609 = 0.42857142857142855 * (t66 * s_cross_leg2)
-            * (parameters[32] * t596
-                - (parameters[30] * t598 + (t601 + t304) * parameters[31])
-                + parameters[33] * t606);
-        let t611 = t577 - t564;
-        let t613 = 1.7857142857142858 * (t564 - t611);
-        let t616 = minus_rate_rod_leg2 * (1.7857142857142858 * t323);
-        let t617 = t596 + t616;
-        let t618 = t616 + t617;
-        let t625 = c_cross_leg2 * t585 - s_cross_leg2 * t582;
-        let t629 = t591 + t609
-            - t297
-                * (parameters[30] * t613 - parameters[31] * t618 - t325 * parameters[32]
-                    - parameters[33] * t625);
-        let t630 = t540 + t629;
-        let gcross_vx_leg2 = t76 * (t98 * t312 + t305 - 0.8660254037844387 * t321);
-        let t637 = 1.7857142857142858 * t564;
-        let t648 = t637 * parameters[24] - parameters[25] * t618
-            + parameters[26] * (t304 - t601)
-            + parameters[27] * (1.7857142857142858 * t611) - parameters[28] * t549;
-        let t665 = t616 * parameters[27]
-            - (parameters[24] * t617 + parameters[25] * t613 + parameters[26] * t598)
-            + parameters[28] * (t552 - t304);
-        let t673 = c_rod_leg2
-            * (t648 - t637 * parameters[29] + parameters[30] * t625
-                + parameters[32] * t588)
+        let t491 = 0.8928571428571429 * t58;
+        let t492 = 0.8660254037844387 * t377;
+        let t493 = 0.5 * t363;
+        let t495 = t492 + t493 + t300;
+        let minus_rate_dot_rod_leg2 = t67 * t495;
+        let t497 = t60 * t296;
+        let t498 = t68 * t497;
+        let t499 = minus_rate_dot_rod_leg2 - t498;
+        let t509 = 0.24 * t269;
+        let t512 = minus_rate_rod_leg2 * (t50 * rate_cross_leg2);
+        let t523 = t277 * t377 - t279 * t363 - c_armcross_leg2 * t361
+            - (s_cross_leg2 * t509 - t512 - t512)
+            - t284 * (t168 * t363 - t88 * t377 - s_armcross_leg2 * t361 + t299);
+        let t526 = 1.7857142857142858 * (t523 - t292 * t495);
+        let t529 = t481 - t509;
+        let t532 = 0.24 * actuator_accelerations[1] - t478;
+        let t534 = c_cross_leg2 * t529 + s_cross_leg2 * t532;
+        let t535 = c_rod_leg2 * t534;
+        let t540 = t68 * t526;
+        let t542 = t498 + minus_rate_dot_rod_leg2;
+        let t544 = t59 * t296;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t50;
+        let t550 = minus_s_rod_leg2 * t534;
+        let t553 = t68 * t491
+            * (parameters[32] * t540
+                - (parameters[30] * t542 + (t544 + t276) * parameters[31])
+                + parameters[33] * t550);
+        let t554 = t491
+            * (parameters[31] * t499 - (t497 + t276) * parameters[30]
+                + parameters[32] * t526 + parameters[33] * t535) + t553;
+        let t555 = 1.7857142857142858 * t512;
+        let t556 = t526 - t555;
+        let t557 = t555 - t556;
+        let t560 = minus_rate_rod_leg2 * (1.7857142857142858 * t294);
+        let t561 = t540 + t560;
+        let t562 = t560 + t561;
+        let t569 = c_cross_leg2 * t532 - s_cross_leg2 * t529;
+        let t574 = t490 + t554
+            - t268
+                * (parameters[30] * t557 - parameters[31] * t562 - t296 * parameters[32]
+                    - parameters[33] * t569);
+        let gcross_vx_leg2 = t67 * (t88 * t284 + t277 - 0.8660254037844387 * t292);
+        let t590 = t555 * parameters[24] - parameters[25] * t562
+            + parameters[26] * (t276 - t544) + parameters[27] * t556
+            - parameters[28] * t499;
+        let t607 = t560 * parameters[27]
+            - (parameters[24] * t561 + parameters[25] * t557 + parameters[26] * t542)
+            + parameters[28] * (t497 - t276);
+        let t615 = c_rod_leg2
+            * (t590 - t555 * parameters[29] + parameters[30] * t569
+                + parameters[32] * t535)
             - minus_s_rod_leg2
-                * (t665 - t616 * parameters[29] - parameters[31] * t625
-                    - parameters[32] * t606);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t75;
-        let t687 = t548 * parameters[24]
-            + parameters[25] * (3.188775510204082 * (t600 - t551))
-            - parameters[26] * t596 - t548 * parameters[27] + parameters[28] * t578;
-        let t693 = t687 - parameters[29] * minus_rate_dot_rod_leg2
-            + parameters[30] * t606 - parameters[31] * t588;
-        let t698 = 9.81 * minus_c_arm_leg3;
-        let t701 = 9.81 * s_arm_leg3;
-        let t710 = actuator_accelerations[2] * parameters[34] + t698 * parameters[35]
-            + t701 * parameters[36] + actuator_accelerations[2] * parameters[37]
+                * (t607 - t560 * parameters[29] - parameters[31] * t569
+                    - parameters[32] * t550);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t66;
+        let t628 = t498 * parameters[24] + parameters[25] * (t544 - t497)
+            - parameters[26] * t540 - t498 * parameters[27] + parameters[28] * t526;
+        let t634 = t628 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t550 - parameters[31] * t535;
+        let t639 = 9.81 * minus_c_arm_leg3;
+        let t642 = 9.81 * s_arm_leg3;
+        let t651 = actuator_accelerations[2] * parameters[34] + t639 * parameters[35]
+            + t642 * parameters[36] + actuator_accelerations[2] * parameters[37]
             + actuator_velocities[2] * parameters[38]
             + ::overact::math::signed(parameters[39], actuator_velocities[2])
             + parameters[40];
-        let t713 = 3.188775510204082 * (t363 * t369);
-        let t715 = t542 - t543 - t372;
-        let rate_dot_rod_leg3 = t150 * t715;
-        let t717 = t713 - rate_dot_rod_leg3;
-        let t719 = t363 * t363;
-        let t720 = 3.188775510204082 * t719;
-        let t732 = t120 * (rate_cross_leg3 * rate_rod_leg3);
-        let t735 = t345 * t412 + t347 * t398 + minus_c_armcross_leg3 * t396
-            - (0.24 * s_cross_leg3 * t340 - t732 - t732);
-        let t745 = t735
-            - t352 * (t148 * t412 + t190 * t398 - s_armcross_leg3 * t396 + t368)
-            - t361 * t715;
-        let t746 = 1.7857142857142858 * t745;
-        let t750 = t698 + 0.24 * actuator_accelerations[2];
-        let t753 = t701 + 0.24 * t340;
-        let t755 = s_cross_leg3 * t750 - c_cross_leg3 * t753;
-        let t756 = c_rod_leg3 * t755;
-        let t759 = 0.8928571428571429 * t117
-            * (parameters[48] * t717 - (t720 + t344) * parameters[47]
-                + parameters[49] * t746 + parameters[50] * t756);
-        let t762 = t713 + rate_dot_rod_leg3;
-        let t764 = t369 * t369;
-        let t765 = 3.188775510204082 * t764;
-        let s_rod_leg3 = 1.7857142857142858 * t120;
-        let rate_dot_cross_leg3 = t150 * t745;
-        let t771 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t774 = s_rod_leg3 * t755;
-        let t777 = 0.42857142857142855 * (t120 * s_cross_leg3)
-            * (parameters[47] * t762 - (t765 + t344) * parameters[48]
-                - parameters[49] * t771 - parameters[50] * t774);
-        let t779 = t745 - t732;
-        let t781 = 1.7857142857142858 * (t732 - t779);
-        let t784 = rate_rod_leg3 * (1.7857142857142858 * t363);
-        let t785 = t771 + t784;
-        let t786 = t784 + t785;
-        let t793 = s_cross_leg3 * t753 + c_cross_leg3 * t750;
-        let t797 = t759 - t777
-            - t339
-                * (parameters[47] * t781 + parameters[48] * t786 - t365 * parameters[49]
-                    - parameters[50] * t793);
-        let t798 = t710 + t797;
-        let gcross_vx_leg3 = t150 * (t345 - t148 * t352 - 0.8660254037844387 * t361);
-        let t814 = parameters[41] * t785 - parameters[42] * t781 + parameters[43] * t762
-            - t784 * parameters[44] + parameters[45] * (t720 - t344);
-        let t822 = 1.7857142857142858 * t732;
-        let t833 = t822 * parameters[41] + parameters[42] * t786
-            + parameters[43] * (t344 - t765)
-            + parameters[44] * (1.7857142857142858 * t779) - parameters[45] * t717;
-        let t841 = s_rod_leg3
-            * (t814 + t784 * parameters[46] - parameters[48] * t793
-                + parameters[49] * t774)
+        let t652 = 0.8928571428571429 * t103;
+        let t653 = t105 * t333;
+        let t654 = t131 * t653;
+        let t656 = t492 - t493 + t337;
+        let rate_dot_rod_leg3 = t130 * t656;
+        let t658 = t654 - rate_dot_rod_leg3;
+        let t668 = 0.24 * t308;
+        let t671 = rate_rod_leg3 * (t49 * rate_cross_leg3);
+        let t682 = t314 * t377 + t316 * t363 + minus_c_armcross_leg3 * t361
+            - (s_cross_leg3 * t668 - t671 - t671)
+            - t321 * (t128 * t377 + t174 * t363 - s_armcross_leg3 * t361 + t336);
+        let t685 = 1.7857142857142858 * (t682 - t329 * t656);
+        let t689 = t639 + 0.24 * actuator_accelerations[2];
+        let t691 = t642 + t668;
+        let t693 = s_cross_leg3 * t689 - c_cross_leg3 * t691;
+        let t694 = c_rod_leg3 * t693;
+        let t699 = t654 + rate_dot_rod_leg3;
+        let t701 = t104 * t333;
+        let t705 = t131 * t685;
+        let s_rod_leg3 = 1.7857142857142858 * t49;
+        let t709 = s_rod_leg3 * t693;
+        let t712 = t131 * t652
+            * (parameters[47] * t699 - (t701 + t313) * parameters[48]
+                - parameters[49] * t705 - parameters[50] * t709);
+        let t713 = t652
+            * (parameters[48] * t658 - (t653 + t313) * parameters[47]
+                + parameters[49] * t685 + parameters[50] * t694) - t712;
+        let t714 = 1.7857142857142858 * t671;
+        let t715 = t685 - t714;
+        let t716 = t714 - t715;
+        let t719 = rate_rod_leg3 * (1.7857142857142858 * t331);
+        let t720 = t705 + t719;
+        let t721 = t719 + t720;
+        let t728 = s_cross_leg3 * t691 + c_cross_leg3 * t689;
+        let t733 = t651 + t713
+            - t307
+                * (parameters[47] * t716 + parameters[48] * t721 - t333 * parameters[49]
+                    - parameters[50] * t728);
+        let gcross_vx_leg3 = t130 * (t314 - t128 * t321 - 0.8660254037844387 * t329);
+        let t749 = parameters[41] * t720 - parameters[42] * t716 + parameters[43] * t699
+            - t719 * parameters[44] + parameters[45] * (t653 - t313);
+        let t766 = t714 * parameters[41] + parameters[42] * t721
+            + parameters[43] * (t313 - t701) + parameters[44] * t715
+            - parameters[45] * t658;
+        let t774 = s_rod_leg3
+            * (t749 + t719 * parameters[46] - parameters[48] * t728
+                + parameters[49] * t709)
             + c_rod_leg3
-                * (t833 - t822 * parameters[46] + parameters[47] * t793
-                    + parameters[49] * t756);
-        let grod_vx_leg3 = 1.5464739353293548 * t149;
-        let t855 = parameters[42] * (3.188775510204082 * (t764 - t719))
-            - t713 * parameters[41] + parameters[43] * t771 + t713 * parameters[44]
-            + parameters[45] * t746;
-        let t861 = t855 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t774
-            - parameters[48] * t756;
-        let t864 = garm_vx_leg1 * t483 - minus_gcross_vx_leg1 * t524
-            + garm_vx_leg2 * t630 + gcross_vx_leg2 * t673 - minus_grod_vx_leg2 * t693
-            + garm_vx_leg3 * t798 + gcross_vx_leg3 * t841 + grod_vx_leg3 * t861;
-        let t868 = t864 + t412 * parameters[51] + t412 * parameters[52];
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t270;
-        let t884 = parameters[8] * (3.188775510204082 * (t449 - t403))
-            - t280 * parameters[7] - parameters[9] * t456 + t280 * parameters[10]
-            - parameters[11] * t431;
-        let t892 = garm_vy_leg1 * t483 - minus_gcross_vy_leg1 * t524
+                * (t766 - t714 * parameters[46] + parameters[47] * t728
+                    + parameters[49] * t694);
+        let grod_vx_leg3 = 1.5464739353293548 * t129;
+        let t787 = parameters[42] * (t701 - t653) - t654 * parameters[41]
+            + parameters[43] * t705 + t654 * parameters[44] + parameters[45] * t685;
+        let t793 = t787 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t709
+            - parameters[48] * t694;
+        let t796 = garm_vx_leg1 * t436 - minus_gcross_vx_leg1 * t474
+            + garm_vx_leg2 * t574 + gcross_vx_leg2 * t615 - minus_grod_vx_leg2 * t634
+            + garm_vx_leg3 * t733 + gcross_vx_leg3 * t774 + grod_vx_leg3 * t793;
+        let t800 = t796 + t377 * parameters[51] + t377 * parameters[52];
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t155 * garm_vy_leg1);
+        let t816 = parameters[8] * (t404 - t252) - t253 * parameters[7]
+            - parameters[9] * t408 + t253 * parameters[10] - parameters[11] * t389;
+        let t824 = garm_vy_leg1 * t436 - minus_gcross_vy_leg1 * t474
             + grod_vy_leg1
-                * (t884 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t459
-                    - parameters[14] * t441);
-        let minus_gcross_vy_leg2 = t76 * (t184 * t312 + t307 + 0.5 * t321);
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t75;
-        let gcross_vy_leg3 = t150 * (t347 - t190 * t352 + 0.5 * t361);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t149;
-        let t916 = t892 + garm_vy_leg2 * t630 - minus_gcross_vy_leg2 * t673
-            - minus_grod_vy_leg2 * t693 + garm_vy_leg3 * t798 + gcross_vy_leg3 * t841
-            - minus_grod_vy_leg3 * t861;
-        let t922 = t916 + t398 * parameters[51] + t398 * parameters[52] - t196 * t868;
-        let gcross_vz_leg2 = t76 * (s_armcross_leg2 * t312 - c_armcross_leg2);
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t173);
-        let gcross_vz_leg3 = t150 * (s_armcross_leg3 * t352 + minus_c_armcross_leg3);
-        let t943 = gcross_vz_leg2 * t673 - minus_garm_vz_leg2 * t630
-            - (minus_garm_vz_leg1 * t483 + minus_gcross_vz_leg1 * t524)
-            + gcross_vz_leg3 * t841 - minus_garm_vz_leg3 * t798;
-        let t944 = t396 + 9.81;
-        let t953 = t248
-            * (t943 + parameters[51] * t944 + parameters[52] * t944 + t230 * t868
-                - t238 * t922);
-        let t955 = t204 * t922 - t238 * t953;
-        let t959 = t157 * t868 - t196 * t955 + t230 * t953;
+                * (t816 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t412
+                    - parameters[14] * t397);
+        let minus_gcross_vy_leg2 = t67 * (t168 * t284 + t279 + 0.5 * t292);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t66;
+        let gcross_vy_leg3 = t130 * (t316 - t174 * t321 + 0.5 * t329);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t129;
+        let t848 = t824 + garm_vy_leg2 * t574 - minus_gcross_vy_leg2 * t615
+            - minus_grod_vy_leg2 * t634 + garm_vy_leg3 * t733 + gcross_vy_leg3 * t774
+            - minus_grod_vy_leg3 * t793;
+        let t854 = t848 + t363 * parameters[51] + t363 * parameters[52] - t180 * t800;
+        let minus_gcross_vz_leg2 = t67 * (t64 * minus_s_arm_leg2);
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t34);
+        let gcross_vz_leg3 = t130 * (t109 * s_arm_leg3);
+        let t872 = gcross_vz_leg3 * t774 - minus_garm_vz_leg3 * t733
+            - (minus_gcross_vz_leg2 * t615 + minus_garm_vz_leg2 * t574
+                + minus_garm_vz_leg1 * t436 + minus_gcross_vz_leg1 * t474);
+        let t873 = t361 + 9.81;
+        let t882 = t229
+            * (t872 + parameters[51] * t873 + parameters[52] * t873 + t211 * t800
+                - t219 * t854);
+        let t884 = t188 * t854 - t219 * t882;
+        let t888 = t137 * t800 - t180 * t884 + t211 * t882;
         Ok([
-            garm_vx_leg1 * t959 + garm_vy_leg1 * t955 - minus_garm_vz_leg1 * t953,
-            garm_vx_leg2 * t959 + garm_vy_leg2 * t955 - minus_garm_vz_leg2 * t953,
-            garm_vx_leg3 * t959 + garm_vy_leg3 * t955 - minus_garm_vz_leg3 * t953,
+            garm_vx_leg1 * t888 + garm_vy_leg1 * t884 - minus_garm_vz_leg1 * t882,
+            garm_vx_leg2 * t888 + garm_vy_leg2 * t884 - minus_garm_vz_leg2 * t882,
+            garm_vx_leg3 * t888 + garm_vy_leg3 * t884 - minus_garm_vz_leg3 * t882,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -9056,7 +8713,7 @@ impl Delta {
     ///
     /// Output: 3 x 3.
     ///
-    /// 830 operations (313 additions, 502 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 830 intermediates.
+    /// 758 operations (280 additions, 463 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 758 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9066,408 +8723,395 @@ impl Delta {
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
-        let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t21 = t1 - 0.24 * c_arm_leg1;
+        let t23 = 1.0 - 3.188775510204082 * t8;
+        ::overact::guard::reach(t23, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t23);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let s_cross_leg1 = 2.0833333333333335 * t17 / (0.56 * c_rod_leg1);
+        let t25 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t25;
+        let c_armcross_leg1 = t21 * grod_vy_leg1;
+        let t28 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t16 / t28;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
-            + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t46 = 0.8928571428571429 * t17;
-        let t50 = 1.7857142857142858 * (t0 - (0.2 + 0.24 * c_arm_leg1));
-        let t52 = c_cross_leg1 * t40;
-        let t53 = c_armcross_leg1 * t52;
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t57 = t53 + s_armcross_leg1;
-        let t58 = 1.7857142857142858 * t57;
-        let t63 = 0.42857142857142855 * (pose[1] * s_cross_leg1);
+        let t30 = 1.0 / s_cross_leg1;
+        let t31 = 4.166666666666667 * t30;
+        let garm_vx_leg1 = c_armcross_leg1 * t31;
+        let t36 = 0.8928571428571429 * t16;
+        let t37 = 1.7857142857142858 * t21;
+        let c_cross_leg1 = (t10 + -0.0576) / t28;
+        let t41 = c_cross_leg1 * t30;
+        let t42 = c_armcross_leg1 * t41;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let t49 = 1.7857142857142858 * (pose[2] - 0.24 * minus_s_arm_leg1);
+        let minus_s_armcross_leg1 = t25 * t49;
+        let t51 = t42 - minus_s_armcross_leg1;
+        let t52 = 1.7857142857142858 * t51;
+        let t54 = parameters[16] * t37 - parameters[15] * t52;
+        let t56 = pose[1] * grod_vy_leg1;
+        let t57 = t36 * t56;
+        let t61 = 0.24 * c_cross_leg1;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let minus_gcross_vx_leg1 = grod_vy_leg1 * t57;
-        let t67 = s_rod_leg1 * minus_gcross_vx_leg1;
-        let t69 = s_rod_leg1 * c_armcross_leg1;
-        let t74 = 0.24 * c_cross_leg1;
-        let t81 = t46 * (parameters[16] * t50 - parameters[15] * t58)
-            - t63 * (parameters[15] * t67 - parameters[16] * t69)
-            - t74 * (parameters[13] * t58 - parameters[14] * t67 - t53 * parameters[16]);
-        let t100 = s_rod_leg1
-            * (parameters[15] * t69
-                - (parameters[7] * t67 + parameters[8] * t58 + t53 * parameters[14]))
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * t51;
+        let t65 = s_rod_leg1 * minus_gcross_vx_leg1;
+        let t71 = t36 * t54 + t57 * (t54 * t56)
+            - t61 * (parameters[13] * t52 - parameters[14] * t65 - t42 * parameters[16]);
+        let t74 = s_rod_leg1 * parameters[15];
+        let t91 = s_rod_leg1
+            * (c_armcross_leg1 * t74
+                - (parameters[7] * t65 + parameters[8] * t52 + t42 * parameters[14]))
             + c_rod_leg1
-                * (t53 * parameters[13] - (parameters[8] * t67 + parameters[10] * t58)
-                    + parameters[15] * t50);
-        let t103 = pose[1] + 0.04330127018922194;
-        let t104 = t103 - 0.17320508075688776;
-        let t106 = pose[0] - 0.025;
-        let t107 = t106 + 0.1;
-        let t108 = 0.5 * t107;
-        let t109 = 0.8660254037844387 * t104 - t108;
-        let t112 = 0.2304 * (t109 * t109 + t3);
-        let t113 = t107 * t107;
-        let t116 = t113 + t104 * t104 + t3;
-        let t118 = t116 - 0.3136 + 0.0576;
-        let t120 = t112 - t118 * t118;
-        ::overact::guard::reach(t120, "leg2")?;
-        let t121 = ::overact::math::sqrt(t120);
-        let t123 = 0.8660254037844387 * t107;
-        let t125 = t123 + 0.5 * t104;
-        let t126 = t125 * t125;
-        let t128 = 1.0 - 3.188775510204082 * t126;
-        ::overact::guard::reach(t128, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t128);
+                * (t42 * parameters[13] - (parameters[8] * t65 + parameters[10] * t52)
+                    + parameters[15] * t37);
+        let t94 = t0 + 0.025;
+        let t95 = t94 * t94;
+        let t97 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t100 = t95 + t97 * t97 + t3;
+        let t103 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t105 = 0.8660254037844387 * t94 - 0.5 * t103;
+        let t106 = pose[1] + t105;
+        let t107 = t106 * t106;
+        let t109 = 0.2304 * (t100 - t107);
+        let t110 = t100 - 0.3136;
+        let t111 = t110 + 0.0576;
+        let t113 = t109 - t111 * t111;
+        ::overact::guard::reach(t113, "leg2")?;
+        let t114 = ::overact::math::sqrt(t113);
+        let t116 = 1.0 - 3.188775510204082 * t107;
+        ::overact::guard::reach(t116, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t116);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let s_cross_leg2 = 2.0833333333333335 * t121 / (0.56 * c_rod_leg2);
+        let t118 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t114 / t118;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t132 = 1.0 / s_cross_leg2;
-        let t133 = 4.166666666666667 * t132;
-        let t134 = 1.0 / c_rod_leg2;
-        let t135 = 1.7857142857142858 * t134;
-        let t136 = t125 * t135;
-        let t138 = 1.0 / t112;
-        let t139 = 0.48 * t109;
-        let c_arm_leg2 = t138 * (t139 * t118 - t14 * t121);
-        let c_cross_leg2 = (t116 - (0.0576 + t126) - 0.3136 * t128)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t138 * (t14 * t118 + t139 * t121);
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t157 = 0.5 * c_armcross_leg2;
-        let t158 = 0.8660254037844387 * t136 - t157;
-        let garm_vx_leg2 = t133 * t158;
-        let t163 = 0.8928571428571429 * t121;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t134;
-        let t166 = c_cross_leg2 * t132;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t173 = 0.24 * c_cross_leg2;
-        let t175 = t173 * (t133 * t136);
-        let t177 = t157 * t166 + 0.5 * s_armcross_leg2 - 0.8660254037844387 * t175;
-        let t178 = 1.7857142857142858 * t177;
-        let t184 = 1.7857142857142858 * (t106 + 0.1 + 0.12 * c_arm_leg2);
-        let t189 = 0.42857142857142855 * (t125 * s_cross_leg2);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t125;
-        let gcross_vx_leg2 = t135 * t177;
-        let t192 = minus_s_rod_leg2 * gcross_vx_leg2;
-        let t196 = minus_s_rod_leg2 * t158;
-        let t200 = t163
-            * (minus_grod_vx_leg2 * parameters[31] + parameters[32] * t178
-                + parameters[33] * t184)
-            + t189
-                * (parameters[32] * t192 - minus_grod_vx_leg2 * parameters[30]
-                    + parameters[33] * t196);
-        let t205 = c_cross_leg2 * (0.24 * garm_vx_leg2);
-        let t210 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t200
-            + t173
-                * (parameters[30] * t178 + parameters[31] * t192
-                    + parameters[33] * t205);
-        let t221 = c_rod_leg2
-            * (parameters[27] * t178 - parameters[25] * t192
-                - minus_grod_vx_leg2 * parameters[28] + parameters[30] * t205
-                + parameters[32] * t184);
-        let t231 = minus_s_rod_leg2
-            * (parameters[25] * t178 - parameters[24] * t192
-                - minus_grod_vx_leg2 * parameters[26] - parameters[31] * t205
-                - parameters[32] * t196);
-        let t244 = minus_grod_vx_leg2
-            * (parameters[28] * t178 - parameters[26] * t192
-                - minus_grod_vx_leg2 * parameters[29] + parameters[30] * t196
-                - parameters[31] * t184);
-        let t246 = garm_vx_leg1
-            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t81)
-            - minus_gcross_vx_leg1 * t100 + garm_vx_leg2 * t210
-            + gcross_vx_leg2 * (t221 - t231) - t244;
-        let t247 = pose[1] - 0.04330127018922194;
-        let t248 = t247 + 0.17320508075688776;
-        let t250 = t108 + 0.8660254037844387 * t248;
-        let t253 = 0.2304 * (t250 * t250 + t3);
-        let t256 = t113 + t248 * t248 + t3;
-        let t258 = t256 - 0.3136 + 0.0576;
-        let t260 = t253 - t258 * t258;
-        ::overact::guard::reach(t260, "leg3")?;
-        let t261 = ::overact::math::sqrt(t260);
-        let t264 = t123 - 0.5 * t248;
-        let t265 = t264 * t264;
-        let t267 = 1.0 - 3.188775510204082 * t265;
-        ::overact::guard::reach(t267, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t267);
+        let t120 = 1.0 / s_cross_leg2;
+        let t121 = 4.166666666666667 * t120;
+        let t122 = 1.0 / c_rod_leg2;
+        let t123 = 1.0 / t109;
+        let t125 = 0.5 * t94;
+        let t127 = 0.48 * (0.8660254037844387 * t97 - t125);
+        let c_arm_leg2 = t123 * (t127 * t111 - t13 * t114);
+        let t132 = 0.12 * c_arm_leg2;
+        let t134 = 1.7857142857142858 * (t94 + t132);
+        let t135 = t122 * t134;
+        let garm_vx_leg2 = t121 * t135;
+        let t140 = 0.8928571428571429 * t114;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t122;
+        let t144 = 1.7857142857142858 * t122;
+        let t145 = t106 * t144;
+        let c_cross_leg2 = (-0.0576 + t110) / t118;
+        let t148 = c_cross_leg2 * t120;
+        let t149 = t145 * t148;
+        let t151 = t121 * t132 - 0.8660254037844387 * t149;
+        let t152 = 1.7857142857142858 * t151;
+        let t158 = t145 * t140;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t106;
+        let gcross_vx_leg2 = t144 * t151;
+        let t161 = minus_s_rod_leg2 * gcross_vx_leg2;
+        let t165 = minus_s_rod_leg2 * t135;
+        let t169 = t140
+            * (minus_grod_vx_leg2 * parameters[31] + parameters[32] * t152
+                + parameters[33] * t134)
+            + t158
+                * (parameters[32] * t161 - minus_grod_vx_leg2 * parameters[30]
+                    + parameters[33] * t165);
+        let t170 = 0.24 * c_cross_leg2;
+        let t174 = t135 * t148;
+        let t179 = garm_vx_leg2 * parameters[17] + garm_vx_leg2 * parameters[20] + t169
+            + t170
+                * (parameters[30] * t152 + parameters[31] * t161
+                    + parameters[33] * t174);
+        let t190 = c_rod_leg2
+            * (parameters[27] * t152 - parameters[25] * t161
+                - minus_grod_vx_leg2 * parameters[28] + parameters[30] * t174
+                + parameters[32] * t134);
+        let t200 = minus_s_rod_leg2
+            * (parameters[25] * t152 - parameters[24] * t161
+                - minus_grod_vx_leg2 * parameters[26] - parameters[31] * t174
+                - parameters[32] * t165);
+        let t213 = minus_grod_vx_leg2
+            * (parameters[28] * t152 - parameters[26] * t161
+                - minus_grod_vx_leg2 * parameters[29] + parameters[30] * t165
+                - parameters[31] * t134);
+        let t215 = garm_vx_leg1
+            * (garm_vx_leg1 * parameters[0] + garm_vx_leg1 * parameters[3] + t71)
+            - minus_gcross_vx_leg1 * t91 + garm_vx_leg2 * t179
+            + gcross_vx_leg2 * (t190 - t200) - t213;
+        let t218 = t95 + t103 * t103 + t3;
+        let t219 = t105 * t105;
+        let t221 = 0.2304 * (t218 - t219);
+        let t222 = t218 - 0.3136;
+        let t223 = t222 + 0.0576;
+        let t225 = t221 - t223 * t223;
+        ::overact::guard::reach(t225, "leg3")?;
+        let t226 = ::overact::math::sqrt(t225);
+        let t228 = 1.0 - 3.188775510204082 * t219;
+        ::overact::guard::reach(t228, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t228);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let s_cross_leg3 = 2.0833333333333335 * t261 / (0.56 * c_rod_leg3);
+        let t230 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t226 / t230;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t271 = 1.0 / s_cross_leg3;
-        let t272 = 4.166666666666667 * t271;
-        let t273 = 1.0 / t253;
-        let t274 = 0.48 * t250;
-        let minus_c_arm_leg3 = t273 * (t274 * t258 + t14 * t261);
-        let c_cross_leg3 = (t256 - (0.0576 + t265) - 0.3136 * t267)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t273 * (t274 * t261 - t14 * t258);
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t292 = 0.5 * minus_c_armcross_leg3;
-        let t293 = 1.0 / c_rod_leg3;
-        let t294 = 1.7857142857142858 * t293;
-        let t295 = t264 * t294;
-        let t297 = t292 + 0.8660254037844387 * t295;
-        let garm_vx_leg3 = t272 * t297;
-        let t302 = 0.8928571428571429 * t261;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t307 = c_cross_leg3 * t271;
-        let t310 = 0.24 * c_cross_leg3;
-        let t312 = t310 * (t272 * t295);
-        let t314 = 0.5 * s_armcross_leg3 - t292 * t307 - 0.8660254037844387 * t312;
-        let t315 = 1.7857142857142858 * t314;
-        let grod_vx_leg3 = 1.5464739353293548 * t293;
-        let t323 = 1.7857142857142858 * (t106 - (0.12 * minus_c_arm_leg3 - 0.1));
-        let t328 = 0.42857142857142855 * (t264 * s_cross_leg3);
-        let s_rod_leg3 = 1.7857142857142858 * t264;
-        let gcross_vx_leg3 = t294 * t314;
-        let t332 = s_rod_leg3 * gcross_vx_leg3;
-        let t335 = s_rod_leg3 * t297;
-        let t339 = t302
-            * (parameters[49] * t315 - grod_vx_leg3 * parameters[48]
-                + parameters[50] * t323)
-            - t328
-                * (grod_vx_leg3 * parameters[47] - parameters[49] * t332
-                    - parameters[50] * t335);
-        let t344 = c_cross_leg3 * (0.24 * garm_vx_leg3);
-        let t349 = garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t339
-            - t310
-                * (parameters[48] * t332 - parameters[47] * t315
-                    - parameters[50] * t344);
-        let t360 = s_rod_leg3
-            * (parameters[41] * t332 + parameters[42] * t315
-                + grod_vx_leg3 * parameters[43] - parameters[48] * t344
-                + parameters[49] * t335);
-        let t370 = c_rod_leg3
-            * (parameters[42] * t332 + parameters[44] * t315
-                + grod_vx_leg3 * parameters[45] + parameters[47] * t344
-                + parameters[49] * t323);
-        let t383 = grod_vx_leg3
-            * (parameters[43] * t332 + parameters[45] * t315
-                + grod_vx_leg3 * parameters[46] - parameters[47] * t335
-                - parameters[48] * t323);
-        let t386 = parameters[51] + parameters[52];
-        let t388 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t41 * t388;
-        let t395 = t74 * garm_vy_leg1;
-        let t396 = 1.7857142857142858 * t395;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t395;
-        let t403 = s_rod_leg1 * minus_gcross_vy_leg1;
-        let t406 = s_rod_leg1 * t388;
-        let t410 = t46
+        let t232 = 1.0 / s_cross_leg3;
+        let t233 = 4.166666666666667 * t232;
+        let t234 = 1.0 / c_rod_leg3;
+        let t235 = 1.0 / t221;
+        let t238 = 0.48 * (t125 + 0.8660254037844387 * t103);
+        let minus_c_arm_leg3 = t235 * (t238 * t223 + t13 * t226);
+        let t243 = 0.12 * minus_c_arm_leg3;
+        let t245 = 1.7857142857142858 * (t94 - t243);
+        let t246 = t234 * t245;
+        let garm_vx_leg3 = t233 * t246;
+        let t251 = 0.8928571428571429 * t226;
+        let t253 = 1.7857142857142858 * t234;
+        let t254 = t105 * t253;
+        let c_cross_leg3 = (-0.0576 + t222) / t230;
+        let t257 = c_cross_leg3 * t232;
+        let t258 = t254 * t257;
+        let t260 = t233 * t243 + 0.8660254037844387 * t258;
+        let t261 = 1.7857142857142858 * t260;
+        let grod_vx_leg3 = 1.5464739353293548 * t234;
+        let t269 = t254 * t251;
+        let s_rod_leg3 = 1.7857142857142858 * t105;
+        let minus_gcross_vx_leg3 = t253 * t260;
+        let t273 = s_rod_leg3 * minus_gcross_vx_leg3;
+        let t276 = s_rod_leg3 * t246;
+        let t280 = t251
+            * (parameters[50] * t245
+                - (parameters[49] * t261 + grod_vx_leg3 * parameters[48]))
+            - t269
+                * (grod_vx_leg3 * parameters[47] + parameters[49] * t273
+                    - parameters[50] * t276);
+        let t281 = 0.24 * c_cross_leg3;
+        let t285 = t246 * t257;
+        let t290 = garm_vx_leg3 * parameters[34] + garm_vx_leg3 * parameters[37] + t280
+            - t281
+                * (parameters[47] * t261 - parameters[48] * t273
+                    - parameters[50] * t285);
+        let t301 = s_rod_leg3
+            * (grod_vx_leg3 * parameters[43]
+                - (parameters[41] * t273 + parameters[42] * t261) - parameters[48] * t285
+                + parameters[49] * t276);
+        let t311 = c_rod_leg3
+            * (grod_vx_leg3 * parameters[45]
+                - (parameters[42] * t273 + parameters[44] * t261) + parameters[47] * t285
+                + parameters[49] * t245);
+        let t324 = grod_vx_leg3
+            * (grod_vx_leg3 * parameters[46]
+                - (parameters[43] * t273 + parameters[45] * t261) - parameters[47] * t276
+                - parameters[48] * t245);
+        let t327 = parameters[51] + parameters[52];
+        let garm_vy_leg1 = t31 * t56;
+        let t335 = t61 * garm_vy_leg1;
+        let t336 = 1.7857142857142858 * t335;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t335;
+        let t343 = s_rod_leg1 * minus_gcross_vy_leg1;
+        let t346 = s_rod_leg1 * t56;
+        let t350 = t36
             * (s_rod_leg1 * parameters[16]
-                - (grod_vy_leg1 * parameters[14] + parameters[15] * t396))
-            - t63
-                * (grod_vy_leg1 * parameters[13] + parameters[15] * t403
-                    - parameters[16] * t406);
-        let t411 = parameters[13] * t396;
-        let t418 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t410
-            - t74 * (t411 - parameters[14] * t403 - t395 * parameters[16]);
-        let t429 = s_rod_leg1
+                - (grod_vy_leg1 * parameters[14] + parameters[15] * t336))
+            - t57
+                * (grod_vy_leg1 * parameters[13] + parameters[15] * t343
+                    - parameters[16] * t346);
+        let t351 = parameters[13] * t336;
+        let t358 = garm_vy_leg1 * parameters[0] + garm_vy_leg1 * parameters[3] + t350
+            - t61 * (t351 - parameters[14] * t343 - t335 * parameters[16]);
+        let t369 = s_rod_leg1
             * (grod_vy_leg1 * parameters[9]
-                - (parameters[7] * t403 + parameters[8] * t396) - t395 * parameters[14]
-                + parameters[15] * t406);
-        let t439 = c_rod_leg1
-            * (grod_vy_leg1 * parameters[11]
-                - (parameters[8] * t403 + parameters[10] * t396) + 0.56 * t411
-                + s_rod_leg1 * parameters[15]);
-        let t440 = t429 + t439;
-        let t443 = 0.8660254037844387 * c_armcross_leg2;
-        let t445 = t443 + 0.5 * t136;
-        let garm_vy_leg2 = t133 * t445;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t134;
-        let t456 = t443 * t166 + 0.8660254037844387 * s_armcross_leg2 + 0.5 * t175;
-        let t457 = 1.7857142857142858 * t456;
-        let t463 = 1.7857142857142858
-            * (t103 - (0.17320508075688776 + 0.20784609690826528 * c_arm_leg2));
-        let t467 = minus_s_rod_leg2 * t445;
-        let minus_gcross_vy_leg2 = t135 * t456;
-        let t470 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
-        let t476 = t163
-            * (minus_grod_vy_leg2 * parameters[31] - parameters[32] * t457
-                + parameters[33] * t463)
-            + t189
-                * (parameters[33] * t467
-                    - (parameters[32] * t470 + minus_grod_vy_leg2 * parameters[30]));
-        let t478 = c_cross_leg2 * (0.24 * garm_vy_leg2);
-        let t486 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t476
-            + t173
-                * (parameters[33] * t478
-                    - (parameters[30] * t457 + parameters[31] * t470));
-        let t497 = c_rod_leg2
-            * (parameters[25] * t470 - parameters[27] * t457
-                - minus_grod_vy_leg2 * parameters[28] + parameters[30] * t478
-                + parameters[32] * t463);
-        let t507 = minus_s_rod_leg2
-            * (parameters[24] * t470 - parameters[25] * t457
-                - minus_grod_vy_leg2 * parameters[26] - parameters[31] * t478
-                - parameters[32] * t467);
-        let t508 = t497 - t507;
-        let t519 = parameters[26] * t470 - parameters[28] * t457
-            - minus_grod_vy_leg2 * parameters[29] + parameters[30] * t467
-            - parameters[31] * t463;
-        let t523 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t525 = t523 - 0.5 * t295;
-        let garm_vy_leg3 = t272 * t525;
-        let t534 = 0.8660254037844387 * s_armcross_leg3 - t523 * t307 + 0.5 * t312;
-        let t535 = 1.7857142857142858 * t534;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t293;
-        let t543 = 1.7857142857142858
-            * (t247 - (0.20784609690826528 * minus_c_arm_leg3 - 0.17320508075688776));
-        let gcross_vy_leg3 = t294 * t534;
-        let t549 = s_rod_leg3 * gcross_vy_leg3;
-        let t552 = s_rod_leg3 * t525;
-        let t556 = t302
-            * (parameters[49] * t535 + minus_grod_vy_leg3 * parameters[48]
-                + parameters[50] * t543)
-            + t328
-                * (minus_grod_vy_leg3 * parameters[47] + parameters[49] * t549
-                    + parameters[50] * t552);
-        let t561 = c_cross_leg3 * (0.24 * garm_vy_leg3);
-        let t566 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t556
-            - t310
-                * (parameters[48] * t549 - parameters[47] * t535
-                    - parameters[50] * t561);
-        let t577 = s_rod_leg3
-            * (parameters[41] * t549 + parameters[42] * t535
-                - minus_grod_vy_leg3 * parameters[43] - parameters[48] * t561
-                + parameters[49] * t552);
-        let t587 = c_rod_leg3
-            * (parameters[42] * t549 + parameters[44] * t535
-                - minus_grod_vy_leg3 * parameters[45] + parameters[47] * t561
-                + parameters[49] * t543);
-        let t588 = t577 + t587;
-        let t599 = parameters[43] * t549 + parameters[45] * t535
-            - minus_grod_vy_leg3 * parameters[46] - parameters[47] * t552
-            - parameters[48] * t543;
-        let t602 = garm_vx_leg1 * t418 - minus_gcross_vx_leg1 * t440
-            + garm_vx_leg2 * t486 + gcross_vx_leg2 * t508 - minus_grod_vx_leg2 * t519
-            + garm_vx_leg3 * t566 + gcross_vx_leg3 * t588 + grod_vx_leg3 * t599;
-        let t605 = 1.7857142857142858 * (pose[2] - 0.24 * minus_s_arm_leg1);
-        let t607 = s_armcross_leg1 * t52;
-        let t608 = c_armcross_leg1 - t607;
-        let t609 = 1.7857142857142858 * t608;
-        let minus_gcross_vz_leg1 = grod_vy_leg1 * t608;
-        let t614 = s_rod_leg1 * minus_gcross_vz_leg1;
-        let t616 = s_rod_leg1 * s_armcross_leg1;
-        let t627 = t46 * (parameters[16] * t605 - parameters[15] * t609)
-            - t63 * (parameters[15] * t614 + parameters[16] * t616)
-            - t74
-                * (parameters[13] * t609 - parameters[14] * t614
-                    + t607 * parameters[16]);
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
-        let t632 = t627
-            - (minus_garm_vz_leg1 * parameters[0] + minus_garm_vz_leg1 * parameters[3]);
-        let t650 = s_rod_leg1
-            * (t607 * parameters[14] - (parameters[7] * t614 + parameters[8] * t609)
-                - parameters[15] * t616)
+                - (parameters[7] * t343 + parameters[8] * t336) - t335 * parameters[14]
+                + parameters[15] * t346);
+        let t379 = t369
             + c_rod_leg1
-                * (parameters[15] * t605
-                    - (parameters[8] * t614 + parameters[10] * t609
-                        + t607 * parameters[13]));
-        let t653 = s_armcross_leg2 * t166;
-        let t654 = t653 - c_armcross_leg2;
-        let t655 = 1.7857142857142858 * t654;
-        let t659 = 1.7857142857142858 * (pose[2] - 0.24 * minus_s_arm_leg2);
-        let gcross_vz_leg2 = t135 * t654;
-        let t664 = minus_s_rod_leg2 * gcross_vz_leg2;
-        let t666 = minus_s_rod_leg2 * s_armcross_leg2;
-        let t677 = t163 * (parameters[32] * t655 + parameters[33] * t659)
-            + t189 * (parameters[32] * t664 - parameters[33] * t666)
-            + t173
-                * (parameters[30] * t655 + parameters[31] * t664
-                    - t653 * parameters[33]);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t133;
-        let t682 = t677
-            - (minus_garm_vz_leg2 * parameters[17]
-                + minus_garm_vz_leg2 * parameters[20]);
-        let t700 = c_rod_leg2
-            * (parameters[27] * t655 - parameters[25] * t664 - t653 * parameters[30]
-                + parameters[32] * t659)
+                * (grod_vy_leg1 * parameters[11]
+                    - (parameters[8] * t343 + parameters[10] * t336) + 0.56 * t351
+                    + t74);
+        let t382 = 0.20784609690826528 * c_arm_leg2;
+        let t384 = 1.7857142857142858 * (t97 - t382);
+        let t385 = t122 * t384;
+        let garm_vy_leg2 = t121 * t385;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t122;
+        let t394 = t121 * t382 + 0.5 * t149;
+        let t395 = 1.7857142857142858 * t394;
+        let t401 = minus_s_rod_leg2 * t385;
+        let minus_gcross_vy_leg2 = t144 * t394;
+        let t404 = minus_s_rod_leg2 * minus_gcross_vy_leg2;
+        let t410 = t140
+            * (minus_grod_vy_leg2 * parameters[31] - parameters[32] * t395
+                + parameters[33] * t384)
+            + t158
+                * (parameters[33] * t401
+                    - (parameters[32] * t404 + minus_grod_vy_leg2 * parameters[30]));
+        let t411 = t148 * t385;
+        let t419 = garm_vy_leg2 * parameters[17] + garm_vy_leg2 * parameters[20] + t410
+            + t170
+                * (parameters[33] * t411
+                    - (parameters[30] * t395 + parameters[31] * t404));
+        let t430 = c_rod_leg2
+            * (parameters[25] * t404 - parameters[27] * t395
+                - minus_grod_vy_leg2 * parameters[28] + parameters[30] * t411
+                + parameters[32] * t384);
+        let t440 = minus_s_rod_leg2
+            * (parameters[24] * t404 - parameters[25] * t395
+                - minus_grod_vy_leg2 * parameters[26] - parameters[31] * t411
+                - parameters[32] * t401);
+        let t441 = t430 - t440;
+        let t452 = parameters[26] * t404 - parameters[28] * t395
+            - minus_grod_vy_leg2 * parameters[29] + parameters[30] * t401
+            - parameters[31] * t384;
+        let t456 = 0.20784609690826528 * minus_c_arm_leg3;
+        let t458 = 1.7857142857142858 * (t103 - t456);
+        let t459 = t234 * t458;
+        let garm_vy_leg3 = t233 * t459;
+        let t466 = 0.5 * t258 - t233 * t456;
+        let t467 = 1.7857142857142858 * t466;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t234;
+        let gcross_vy_leg3 = t253 * t466;
+        let t477 = s_rod_leg3 * gcross_vy_leg3;
+        let t480 = s_rod_leg3 * t459;
+        let t484 = t251
+            * (parameters[49] * t467 + minus_grod_vy_leg3 * parameters[48]
+                + parameters[50] * t458)
+            + t269
+                * (minus_grod_vy_leg3 * parameters[47] + parameters[49] * t477
+                    + parameters[50] * t480);
+        let t488 = t257 * t459;
+        let t493 = garm_vy_leg3 * parameters[34] + garm_vy_leg3 * parameters[37] + t484
+            - t281
+                * (parameters[48] * t477 - parameters[47] * t467
+                    - parameters[50] * t488);
+        let t504 = s_rod_leg3
+            * (parameters[41] * t477 + parameters[42] * t467
+                - minus_grod_vy_leg3 * parameters[43] - parameters[48] * t488
+                + parameters[49] * t480);
+        let t514 = c_rod_leg3
+            * (parameters[42] * t477 + parameters[44] * t467
+                - minus_grod_vy_leg3 * parameters[45] + parameters[47] * t488
+                + parameters[49] * t458);
+        let t515 = t504 + t514;
+        let t526 = parameters[43] * t477 + parameters[45] * t467
+            - minus_grod_vy_leg3 * parameters[46] - parameters[47] * t480
+            - parameters[48] * t458;
+        let t529 = garm_vx_leg1 * t358 - minus_gcross_vx_leg1 * t379
+            + garm_vx_leg2 * t419 + gcross_vx_leg2 * t441 - minus_grod_vx_leg2 * t452
+            + garm_vx_leg3 * t493 - minus_gcross_vx_leg3 * t515 + grod_vx_leg3 * t526;
+        let t531 = minus_s_armcross_leg1 * t41;
+        let t532 = c_armcross_leg1 + t531;
+        let t533 = 1.7857142857142858 * t532;
+        let t535 = parameters[16] * t49 - parameters[15] * t533;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * t532;
+        let t542 = s_rod_leg1 * minus_gcross_vz_leg1;
+        let t548 = t36 * t535 + t57 * (t56 * t535)
+            - t61
+                * (parameters[13] * t533 - parameters[14] * t542
+                    - t531 * parameters[16]);
+        let minus_minus_garm_vz_leg1 = minus_s_armcross_leg1 * t31;
+        let t553 = t548 + minus_minus_garm_vz_leg1 * parameters[0]
+            + minus_minus_garm_vz_leg1 * parameters[3];
+        let t560 = s_rod_leg1 * minus_s_armcross_leg1;
+        let t572 = s_rod_leg1
+            * (parameters[15] * t560
+                - (t531 * parameters[14] + parameters[7] * t542 + parameters[8] * t533))
+            + c_rod_leg1
+                * (parameters[15] * t49
+                    - (parameters[8] * t542 + parameters[10] * t533
+                        - t531 * parameters[13]));
+        let minus_s_arm_leg2 = t123 * (t13 * t111 + t127 * t114);
+        let t579 = t120 * minus_s_arm_leg2;
+        let t580 = 1.7857142857142858 * t579;
+        let t584 = 1.7857142857142858 * (pose[2] - 0.24 * minus_s_arm_leg2);
+        let t586 = parameters[33] * t584 - parameters[32] * t580;
+        let minus_gcross_vz_leg2 = t144 * t579;
+        let t593 = minus_s_rod_leg2 * minus_gcross_vz_leg2;
+        let minus_s_armcross_leg2 = t122 * t584;
+        let t597 = minus_s_armcross_leg2 * t148;
+        let t601 = t140 * t586 + t158 * (t145 * t586)
+            + t170
+                * (t597 * parameters[33]
+                    - (parameters[30] * t580 + parameters[31] * t593));
+        let minus_minus_garm_vz_leg2 = minus_s_armcross_leg2 * t121;
+        let t606 = t601 + minus_minus_garm_vz_leg2 * parameters[17]
+            + minus_minus_garm_vz_leg2 * parameters[20];
+        let t621 = minus_s_rod_leg2 * minus_s_armcross_leg2;
+        let t625 = c_rod_leg2
+            * (parameters[25] * t593 - parameters[27] * t580 + t597 * parameters[30]
+                + parameters[32] * t584)
             - minus_s_rod_leg2
-                * (parameters[25] * t655 - parameters[24] * t664 + t653 * parameters[31]
-                    + parameters[32] * t666);
-        let t709 = parameters[28] * t655 - parameters[26] * t664 - parameters[30] * t666
-            - parameters[31] * t659;
-        let t713 = s_armcross_leg3 * t307;
-        let t714 = t713 + minus_c_armcross_leg3;
-        let t715 = 1.7857142857142858 * t714;
-        let t719 = 1.7857142857142858 * (pose[2] + 0.24 * s_arm_leg3);
-        let t723 = s_rod_leg3 * s_armcross_leg3;
-        let gcross_vz_leg3 = t294 * t714;
-        let t726 = s_rod_leg3 * gcross_vz_leg3;
-        let t737 = t302 * (parameters[49] * t715 + parameters[50] * t719)
-            - t328 * (parameters[50] * t723 - parameters[49] * t726)
-            - t310
-                * (parameters[48] * t726 - parameters[47] * t715
-                    + t713 * parameters[50]);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t272;
-        let t742 = t737
-            - (minus_garm_vz_leg3 * parameters[34]
-                + minus_garm_vz_leg3 * parameters[37]);
-        let t760 = s_rod_leg3
-            * (parameters[41] * t726 + parameters[42] * t715 + t713 * parameters[48]
-                - parameters[49] * t723)
+                * (parameters[24] * t593 - parameters[25] * t580 - t597 * parameters[31]
+                    - parameters[32] * t621);
+        let t634 = parameters[26] * t593 - parameters[28] * t580 + parameters[30] * t621
+            - parameters[31] * t584;
+        let s_arm_leg3 = t235 * (t238 * t226 - t13 * t223);
+        let t642 = t232 * s_arm_leg3;
+        let t643 = 1.7857142857142858 * t642;
+        let t647 = 1.7857142857142858 * (pose[2] + 0.24 * s_arm_leg3);
+        let t649 = parameters[49] * t643 + parameters[50] * t647;
+        let gcross_vz_leg3 = t253 * t642;
+        let t655 = s_rod_leg3 * gcross_vz_leg3;
+        let minus_s_armcross_leg3 = t234 * t647;
+        let t660 = minus_s_armcross_leg3 * t257;
+        let t664 = t251 * t649 + t269 * (t254 * t649)
+            - t281
+                * (parameters[48] * t655 - parameters[47] * t643
+                    - t660 * parameters[50]);
+        let minus_minus_garm_vz_leg3 = minus_s_armcross_leg3 * t233;
+        let t669 = t664 + minus_minus_garm_vz_leg3 * parameters[34]
+            + minus_minus_garm_vz_leg3 * parameters[37];
+        let t676 = s_rod_leg3 * minus_s_armcross_leg3;
+        let t688 = s_rod_leg3
+            * (parameters[41] * t655 + parameters[42] * t643 - t660 * parameters[48]
+                + parameters[49] * t676)
             + c_rod_leg3
-                * (parameters[42] * t726 + parameters[44] * t715 - t713 * parameters[47]
-                    + parameters[49] * t719);
-        let t769 = parameters[43] * t726 + parameters[45] * t715 + parameters[47] * t723
-            - parameters[48] * t719;
-        let t772 = garm_vx_leg1 * t632 - minus_gcross_vx_leg1 * t650
-            + garm_vx_leg2 * t682 + gcross_vx_leg2 * t700 - minus_grod_vx_leg2 * t709
-            + garm_vx_leg3 * t742 + gcross_vx_leg3 * t760 + grod_vx_leg3 * t769;
-        let t785 = grod_vy_leg1
+                * (parameters[42] * t655 + parameters[44] * t643 + t660 * parameters[47]
+                    + parameters[49] * t647);
+        let t697 = parameters[43] * t655 + parameters[45] * t643 - parameters[47] * t676
+            - parameters[48] * t647;
+        let t700 = garm_vx_leg1 * t553 - minus_gcross_vx_leg1 * t572
+            + garm_vx_leg2 * t606 + gcross_vx_leg2 * t625 - minus_grod_vx_leg2 * t634
+            + garm_vx_leg3 * t669 - minus_gcross_vx_leg3 * t688 + grod_vx_leg3 * t697;
+        let t713 = grod_vy_leg1
             * (grod_vy_leg1 * parameters[12]
-                - (parameters[9] * t403 + parameters[11] * t396) - parameters[13] * t406
+                - (parameters[9] * t343 + parameters[11] * t336) - parameters[13] * t346
                 - s_rod_leg1 * parameters[14]);
-        let t792 = garm_vy_leg1 * t418 - minus_gcross_vy_leg1 * t440 + t785
-            + garm_vy_leg2 * t486 - minus_gcross_vy_leg2 * t508
-            - minus_grod_vy_leg2 * t519;
-        let t811 = garm_vy_leg1 * t632 - minus_gcross_vy_leg1 * t650
-            + grod_vy_leg1
-                * (parameters[13] * t616 - (parameters[9] * t614 + parameters[11] * t609)
-                    - parameters[14] * t605);
-        let t823 = t811 + garm_vy_leg2 * t682 - minus_gcross_vy_leg2 * t700
-            - minus_grod_vy_leg2 * t709 + garm_vy_leg3 * t742 + gcross_vy_leg3 * t760
-            - minus_grod_vy_leg3 * t769;
-        let t834 = gcross_vz_leg2 * t700 - minus_garm_vz_leg2 * t682
-            - (minus_garm_vz_leg1 * t632 + minus_gcross_vz_leg1 * t650)
-            + gcross_vz_leg3 * t760 - minus_garm_vz_leg3 * t742;
+        let t720 = garm_vy_leg1 * t358 - minus_gcross_vy_leg1 * t379 + t713
+            + garm_vy_leg2 * t419 - minus_gcross_vy_leg2 * t441
+            - minus_grod_vy_leg2 * t452;
+        let t739 = garm_vy_leg1 * t553 - minus_gcross_vy_leg1 * t572
+            - grod_vy_leg1
+                * (parameters[13] * t560 + parameters[9] * t542 + parameters[11] * t533
+                    + parameters[14] * t49);
+        let t751 = t739 + garm_vy_leg2 * t606 - minus_gcross_vy_leg2 * t625
+            - minus_grod_vy_leg2 * t634 + garm_vy_leg3 * t669 + gcross_vy_leg3 * t688
+            - minus_grod_vy_leg3 * t697;
+        let t762 = minus_minus_garm_vz_leg2 * t606 - minus_gcross_vz_leg2 * t625
+            - (minus_gcross_vz_leg1 * t572 - minus_minus_garm_vz_leg1 * t553)
+            + gcross_vz_leg3 * t688 + minus_minus_garm_vz_leg3 * t669;
         Ok([
             [
-                t246 + garm_vx_leg3 * t349 + gcross_vx_leg3 * (t360 + t370) + t383
-                    + t386,
-                t602,
-                t772,
+                t215 + garm_vx_leg3 * t290 - minus_gcross_vx_leg3 * (t301 + t311) + t324
+                    + t327,
+                t529,
+                t700,
             ],
             [
-                t602,
-                t792 + garm_vy_leg3 * t566 + gcross_vy_leg3 * t588
-                    - minus_grod_vy_leg3 * t599 + t386,
-                t823,
+                t529,
+                t720 + garm_vy_leg3 * t493 + gcross_vy_leg3 * t515
+                    - minus_grod_vy_leg3 * t526 + t327,
+                t751,
             ],
-            [t772, t823, t834 + t386],
+            [t700, t751, t762 + t327],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -9479,7 +9123,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 789 operations (302 additions, 472 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 795 intermediates.
+    /// 722 operations (285 additions, 422 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 728 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9488,383 +9132,368 @@ impl Delta {
         twist: &[f64; 3],
         parameters: &[f64; 53],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = t1 * t1;
+        let t0 = pose[0] + 0.05;
+        let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
-        let t5 = 0.2304 * (t2 + t3);
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.2304 * t4;
         let t6 = 1.0 / t5;
         let t7 = 0.48 * t1;
         let t8 = pose[1] * pose[1];
-        let t10 = t2 + t8 + t3;
-        let t12 = t10 - 0.3136 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t5 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t6 * (t7 * t12 - t14 * t17);
-        let t24 = 1.0 - 3.188775510204082 * t8;
-        ::overact::guard::reach(t24, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t24);
+        let t10 = t4 + t8 - 0.3136;
+        let t11 = t10 + 0.0576;
+        let t13 = 0.48 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let t21 = 3.188775510204082 * t8;
+        let t22 = 1.0 - t21;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let c_cross_leg1 = (t10 - (0.0576 + t8) - 0.3136 * t24) / (0.2688 * c_rod_leg1);
-        let minus_s_arm_leg1 = t6 * (t14 * t12 + t7 * t17);
-        let t36 = 0.56 * c_rod_leg1;
-        let s_cross_leg1 = 2.0833333333333335 * t17 / t36;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.0576) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t40 = 1.0 / s_cross_leg1;
-        let t41 = 4.166666666666667 * t40;
-        let garm_vx_leg1 = c_armcross_leg1 * t41;
-        let t43 = 0.24 * c_cross_leg1;
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 4.166666666666667 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t37 = 0.24 * c_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t49 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t51 = pose[1] * grod_vy_leg1;
-        let rate_arm_leg1 = t41 * (t49 + t51 * twist[1]);
-        let t55 = rate_arm_leg1 * rate_arm_leg1;
-        let t57 = c_cross_leg1 * t40;
-        let garm_vy_leg1 = t41 * t51;
-        let t60 = t43 * garm_vy_leg1;
-        let t66 = t57 * t49 + t60 * twist[1] + s_armcross_leg1 * twist[0]
+        let t45 = pose[1] * grod_vy_leg1;
+        let t46 = t45 * twist[1];
+        let rate_arm_leg1 = t35
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t46);
+        let t49 = rate_arm_leg1 * rate_arm_leg1;
+        let t56 = t37 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t66;
-        let t68 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t56;
+        let t58 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t70 = rate_rod_leg1 * rate_rod_leg1;
-        let t71 = t68 + t70;
-        let t73 = t43 * t55 + t36 * t71;
-        let t74 = pose[1] * minus_rate_cross_leg1;
-        let t77 = minus_rate_cross_leg1 * t74 - pose[1] * t71;
-        let rate_dot_arm_leg1 = t41 * (t73 - t51 * t77);
-        let t82 = 9.81 * c_arm_leg1;
-        let t85 = 9.81 * minus_s_arm_leg1;
-        let t94 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t82
-            - parameters[2] * t85 + parameters[3] * rate_dot_arm_leg1
+        let t60 = rate_rod_leg1 * rate_rod_leg1;
+        let t64 = pose[1] * t60;
+        let rate_dot_arm_leg1 = t35
+            * (t37 * t49 + 0.56 * c_rod_leg1 * (t58 + t60) + t45 * t64);
+        let t69 = 9.81 * c_arm_leg1;
+        let t72 = 9.81 * minus_s_arm_leg1;
+        let t81 = parameters[0] * rate_dot_arm_leg1 - parameters[1] * t69
+            - parameters[2] * t72 + parameters[3] * rate_dot_arm_leg1
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
-        let t97 = 3.188775510204082 * (t66 * t74);
-        let minus_rate_dot_rod_leg1 = grod_vy_leg1 * t77;
-        let t99 = t97 + minus_rate_dot_rod_leg1;
-        let t101 = t66 * t66;
-        let t102 = 3.188775510204082 * t101;
-        let t112 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
-        let t115 = t57 * t73 - t60 * t77 + 0.24 * s_cross_leg1 * t55 + t112 + t112;
-        let t116 = 1.7857142857142858 * t115;
-        let t120 = t85 - 0.24 * t55;
-        let t123 = 0.24 * rate_dot_arm_leg1 - t82;
-        let t125 = c_cross_leg1 * t120 + s_cross_leg1 * t123;
-        let t126 = c_rod_leg1 * t125;
-        let t129 = 0.8928571428571429 * t17
-            * (parameters[14] * t99 - parameters[13] * (t102 + t70)
-                - parameters[15] * t116 + parameters[16] * t126);
-        let t132 = t97 - minus_rate_dot_rod_leg1;
-        let t134 = t74 * t74;
-        let t135 = 3.188775510204082 * t134;
+        let t82 = 0.8928571428571429 * t16;
+        let t83 = t22 * t58;
+        let t84 = t45 * t83;
+        let minus_minus_rate_dot_rod_leg1 = grod_vy_leg1 * t64;
+        let t86 = t84 - minus_minus_rate_dot_rod_leg1;
+        let t91 = 0.24 * rate_dot_arm_leg1;
+        let t93 = 0.24 * t49;
+        let t95 = t46 * minus_rate_cross_leg1;
+        let t99 = 1.7857142857142858
+            * (c_cross_leg1 * t91 + s_cross_leg1 * t93 + t95 + t95);
+        let t102 = t72 - t93;
+        let t104 = t91 - t69;
+        let t106 = c_cross_leg1 * t102 + s_cross_leg1 * t104;
+        let t107 = c_rod_leg1 * t106;
+        let t112 = t84 + minus_minus_rate_dot_rod_leg1;
+        let t114 = t21 * t58;
+        let t118 = t45 * t99;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t115;
-        let t141 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t144 = s_rod_leg1 * t125;
-        let t147 = 0.42857142857142855 * (pose[1] * s_cross_leg1)
-            * (parameters[13] * t132 - parameters[14] * (t135 + t70)
-                + parameters[15] * t141 - parameters[16] * t144);
-        let t149 = t112 - t115;
-        let t151 = 1.7857142857142858 * (t112 + t149);
-        let t154 = rate_rod_leg1 * (1.7857142857142858 * t66);
-        let t155 = t141 + t154;
-        let t156 = t154 + t155;
-        let t163 = c_cross_leg1 * t123 - s_cross_leg1 * t120;
-        let t167 = t129 - t147
-            + t43
-                * (parameters[13] * t151 + parameters[14] * t156 + parameters[15] * t68
-                    + parameters[16] * t163);
-        let t168 = t94 + t167;
-        let minus_gcross_vx_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 * t57 + s_armcross_leg1);
-        let t182 = parameters[8] * t151 - parameters[7] * t155 + parameters[9] * t132
-            + parameters[10] * t154 + parameters[11] * (t102 - t70);
-        let t192 = 1.7857142857142858 * t112;
-        let t201 = parameters[9] * (t70 - t135)
-            - (parameters[7] * t192 + parameters[8] * t156)
-            + parameters[10] * (1.7857142857142858 * t149) - parameters[11] * t99;
-        let t209 = s_rod_leg1
-            * (t182 - parameters[12] * t154 - parameters[14] * t163
-                + parameters[15] * t144)
+        let t122 = s_rod_leg1 * t106;
+        let t125 = t45 * t82
+            * (parameters[13] * t112 - parameters[14] * (t114 + t60)
+                + parameters[15] * t118 - parameters[16] * t122);
+        let t126 = t82
+            * (parameters[14] * t86 - parameters[13] * (t83 + t60) - parameters[15] * t99
+                + parameters[16] * t107) - t125;
+        let t127 = 1.7857142857142858 * t95;
+        let t128 = t127 - t99;
+        let t129 = t127 + t128;
+        let t132 = rate_rod_leg1 * (1.7857142857142858 * t56);
+        let t133 = t118 + t132;
+        let t134 = t132 + t133;
+        let t141 = c_cross_leg1 * t104 - s_cross_leg1 * t102;
+        let t146 = t81 + t126
+            + t37
+                * (parameters[13] * t129 + parameters[14] * t134 + parameters[15] * t58
+                    + parameters[16] * t141);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t34);
+        let t159 = parameters[8] * t129 - parameters[7] * t133 + parameters[9] * t112
+            + parameters[10] * t132 + parameters[11] * (t83 - t60);
+        let t176 = parameters[9] * (t60 - t114)
+            - (parameters[7] * t127 + parameters[8] * t134) + parameters[10] * t128
+            - parameters[11] * t86;
+        let t184 = s_rod_leg1
+            * (t159 - parameters[12] * t132 - parameters[14] * t141
+                + parameters[15] * t122)
             + c_rod_leg1
-                * (t201 + parameters[12] * t192 + parameters[13] * t163
-                    + parameters[15] * t126);
-        let t213 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t216 = pose[0] - 0.025 + 0.1;
-        let t217 = 0.5 * t216;
-        let t218 = 0.8660254037844387 * t213 - t217;
-        let t221 = 0.2304 * (t218 * t218 + t3);
-        let t222 = t216 * t216;
-        let t225 = t222 + t213 * t213 + t3;
-        let t227 = t225 - 0.3136 + 0.0576;
-        let t229 = t221 - t227 * t227;
-        ::overact::guard::reach(t229, "leg2")?;
-        let t230 = ::overact::math::sqrt(t229);
-        let t232 = 0.8660254037844387 * t216;
-        let t234 = t232 + 0.5 * t213;
-        let t235 = t234 * t234;
-        let t237 = 1.0 - 3.188775510204082 * t235;
-        ::overact::guard::reach(t237, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t237);
+                * (t176 + parameters[12] * t127 + parameters[13] * t141
+                    + parameters[15] * t107);
+        let t187 = t0 + 0.025;
+        let t188 = t187 * t187;
+        let t190 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t193 = t188 + t190 * t190 + t3;
+        let t196 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t198 = 0.8660254037844387 * t187 - 0.5 * t196;
+        let t199 = pose[1] + t198;
+        let t200 = t199 * t199;
+        let t202 = 0.2304 * (t193 - t200);
+        let t203 = t193 - 0.3136;
+        let t204 = t203 + 0.0576;
+        let t206 = t202 - t204 * t204;
+        ::overact::guard::reach(t206, "leg2")?;
+        let t207 = ::overact::math::sqrt(t206);
+        let t208 = 3.188775510204082 * t200;
+        let t209 = 1.0 - t208;
+        ::overact::guard::reach(t209, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t209);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t239 = 0.56 * c_rod_leg2;
-        let s_cross_leg2 = 2.0833333333333335 * t230 / t239;
+        let t211 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t207 / t211;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t241 = 1.0 / s_cross_leg2;
-        let t242 = 4.166666666666667 * t241;
-        let t243 = 1.0 / c_rod_leg2;
-        let t244 = 1.7857142857142858 * t243;
-        let t245 = t234 * t244;
-        let t247 = 1.0 / t221;
-        let t248 = 0.48 * t218;
-        let c_arm_leg2 = t247 * (t248 * t227 - t14 * t230);
-        let c_cross_leg2 = (t225 - (0.0576 + t235) - 0.3136 * t237)
-            / (0.2688 * c_rod_leg2);
-        let minus_s_arm_leg2 = t247 * (t14 * t227 + t248 * t230);
+        let t213 = 1.0 / s_cross_leg2;
+        let t214 = 4.166666666666667 * t213;
+        let t215 = 1.0 / c_rod_leg2;
+        let t216 = 1.7857142857142858 * t215;
+        let t217 = t199 * t216;
+        let t219 = 1.0 / t202;
+        let t221 = 0.5 * t187;
+        let t223 = 0.48 * (0.8660254037844387 * t190 - t221);
+        let c_arm_leg2 = t219 * (t223 * t204 - t13 * t207);
+        let c_cross_leg2 = (-0.0576 + t203) / t211;
+        let minus_s_arm_leg2 = t219 * (t13 * t204 + t223 * t207);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t266 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t242 * (0.8660254037844387 * t245 - t266);
-        let t269 = 0.24 * c_cross_leg2;
-        let t270 = 0.8660254037844387 * c_armcross_leg2;
+        let t237 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t214 * (0.8660254037844387 * t217 - t237);
+        let t240 = 0.24 * c_cross_leg2;
+        let t241 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t278 = t270 * twist[1] - t266 * twist[0] - s_armcross_leg2 * twist[2];
-        let t279 = 0.8660254037844387 * twist[0];
-        let t280 = 0.5 * twist[1];
-        let t281 = t279 + t280;
-        let rate_arm_leg2 = t242 * (t278 + t245 * t281);
-        let t285 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t244 * t281;
-        let t288 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t289 = 0.5 * s_armcross_leg2;
-        let t291 = 0.8660254037844387 * s_armcross_leg2;
-        let t296 = c_cross_leg2 * t241;
-        let t300 = t269 * (t242 * t245);
-        let t302 = t289 * twist[0] - t291 * twist[1] - c_armcross_leg2 * twist[2]
-            - t296 * t278 - t300 * t281;
-        let rate_cross_leg2 = t244 * t302;
-        let t304 = rate_cross_leg2 * rate_cross_leg2;
-        let t305 = t288 + t304;
-        let t307 = t269 * t285 + t239 * t305;
-        let t309 = t234 * rate_cross_leg2;
-        let t311 = t234 * t305 - rate_cross_leg2 * t309;
-        let rate_dot_arm_leg2 = t242 * (t307 + t245 * t311);
-        let t316 = 9.81 * c_arm_leg2;
-        let t319 = 9.81 * minus_s_arm_leg2;
-        let t328 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t316
-            - parameters[19] * t319 + parameters[20] * rate_dot_arm_leg2
+        let t249 = t241 * twist[1] - t237 * twist[0] - s_armcross_leg2 * twist[2];
+        let t250 = 0.8660254037844387 * twist[0];
+        let t251 = 0.5 * twist[1];
+        let t252 = t250 + t251;
+        let t253 = t217 * t252;
+        let rate_arm_leg2 = t214 * (t249 + t253);
+        let t256 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t216 * t252;
+        let t260 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t261 = 0.5 * s_armcross_leg2;
+        let t263 = 0.8660254037844387 * s_armcross_leg2;
+        let t268 = c_cross_leg2 * t213;
+        let t271 = t217 * t268;
+        let t273 = t261 * twist[0] - t263 * twist[1] - c_armcross_leg2 * twist[2]
+            - t268 * t249 - t271 * t252;
+        let rate_cross_leg2 = t216 * t273;
+        let t275 = rate_cross_leg2 * rate_cross_leg2;
+        let t278 = t240 * t256 + 0.56 * c_rod_leg2 * (t260 + t275);
+        let t279 = t199 * t260;
+        let rate_dot_arm_leg2 = t214 * (t278 + t217 * t279);
+        let t284 = 9.81 * c_arm_leg2;
+        let t287 = 9.81 * minus_s_arm_leg2;
+        let t296 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t284
+            - parameters[19] * t287 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let minus_rate_dot_rod_leg2 = t244 * t311;
-        let t332 = 3.188775510204082 * (t302 * t309);
-        let t333 = minus_rate_dot_rod_leg2 - t332;
-        let t335 = t302 * t302;
-        let t336 = 3.188775510204082 * t335;
-        let t344 = t234 * (rate_cross_leg2 * minus_rate_rod_leg2);
-        let t349 = t296 * t307 + 0.24 * s_cross_leg2 * t285 - t344 - t344 + t300 * t311;
-        let t350 = 1.7857142857142858 * t349;
-        let t354 = t319 - 0.24 * t285;
-        let t357 = 0.24 * rate_dot_arm_leg2 - t316;
-        let t359 = c_cross_leg2 * t354 + s_cross_leg2 * t357;
-        let t360 = c_rod_leg2 * t359;
-        let t363 = 0.8928571428571429 * t230
-            * (parameters[31] * t333 - parameters[30] * (t336 + t288)
-                - parameters[32] * t350 + parameters[33] * t360);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t234;
-        let t367 = minus_s_rod_leg2 * t359;
-        let t369 = t332 + minus_rate_dot_rod_leg2;
-        let t371 = t309 * t309;
-        let t372 = 3.188775510204082 * t371;
-        let minus_rate_dot_cross_leg2 = t244 * t349;
-        let t377 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t381 = 0.42857142857142855 * (t234 * s_cross_leg2)
-            * (parameters[33] * t367
-                - (parameters[30] * t369 + parameters[31] * (t372 + t288)
-                    + parameters[32] * t377));
-        let t383 = t349 + t344;
-        let t385 = 1.7857142857142858 * (t344 + t383);
-        let t388 = minus_rate_rod_leg2 * (1.7857142857142858 * t302);
-        let t389 = t377 - t388;
-        let t390 = t389 - t388;
-        let t397 = c_cross_leg2 * t357 - s_cross_leg2 * t354;
-        let t401 = t363 + t381
-            - t269
-                * (parameters[30] * t385 + parameters[31] * t390 - parameters[32] * t304
-                    - parameters[33] * t397);
-        let t402 = t328 + t401;
-        let gcross_vx_leg2 = t244 * (t266 * t296 + t289 - 0.8660254037844387 * t300);
-        let t409 = 1.7857142857142858 * t344;
-        let t420 = parameters[24] * t409 + parameters[25] * t390
-            + parameters[26] * (t288 - t372)
-            - parameters[27] * (1.7857142857142858 * t383) - parameters[28] * t333;
-        let t437 = parameters[24] * t389 - parameters[25] * t385 - parameters[26] * t369
-            + parameters[27] * t388 + parameters[28] * (t336 - t288);
-        let t445 = c_rod_leg2
-            * (t420 - parameters[29] * t409 + parameters[30] * t397
-                + parameters[32] * t360)
+        let t297 = 0.8928571428571429 * t207;
+        let minus_rate_dot_rod_leg2 = t216 * t279;
+        let t299 = t209 * t275;
+        let t300 = t217 * t299;
+        let t301 = minus_rate_dot_rod_leg2 - t300;
+        let t307 = 0.24 * t256;
+        let t309 = t253 * rate_cross_leg2;
+        let t315 = 1.7857142857142858
+            * (t268 * t278 + s_cross_leg2 * t307 - t309 - t309 + t271 * t279);
+        let t318 = t287 - t307;
+        let t321 = 0.24 * rate_dot_arm_leg2 - t284;
+        let t323 = c_cross_leg2 * t318 + s_cross_leg2 * t321;
+        let t324 = c_rod_leg2 * t323;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t199;
+        let t330 = minus_s_rod_leg2 * t323;
+        let t332 = t300 + minus_rate_dot_rod_leg2;
+        let t334 = t208 * t275;
+        let t338 = t217 * t315;
+        let t342 = t217 * t297
+            * (parameters[33] * t330
+                - (parameters[30] * t332 + parameters[31] * (t334 + t260)
+                    + parameters[32] * t338));
+        let t343 = t297
+            * (parameters[31] * t301 - parameters[30] * (t299 + t260)
+                - parameters[32] * t315 + parameters[33] * t324) + t342;
+        let t344 = 1.7857142857142858 * t309;
+        let t345 = t315 + t344;
+        let t346 = t344 + t345;
+        let t349 = minus_rate_rod_leg2 * (1.7857142857142858 * t273);
+        let t350 = t338 - t349;
+        let t351 = t350 - t349;
+        let t358 = c_cross_leg2 * t321 - s_cross_leg2 * t318;
+        let t363 = t296 + t343
+            - t240
+                * (parameters[30] * t346 + parameters[31] * t351 - parameters[32] * t275
+                    - parameters[33] * t358);
+        let gcross_vx_leg2 = t216 * (t237 * t268 + t261 - 0.8660254037844387 * t271);
+        let t379 = parameters[24] * t344 + parameters[25] * t351
+            + parameters[26] * (t260 - t334) - parameters[27] * t345
+            - parameters[28] * t301;
+        let t396 = parameters[24] * t350 - parameters[25] * t346 - parameters[26] * t332
+            + parameters[27] * t349 + parameters[28] * (t299 - t260);
+        let t404 = c_rod_leg2
+            * (t379 - parameters[29] * t344 + parameters[30] * t358
+                + parameters[32] * t324)
             - minus_s_rod_leg2
-                * (t437 - parameters[29] * t388 - parameters[31] * t397
-                    - parameters[32] * t367);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t243;
-        let t459 = parameters[24] * t332
-            + parameters[25] * (3.188775510204082 * (t371 - t335))
-            + parameters[26] * t377 - parameters[27] * t332 - parameters[28] * t350;
-        let t465 = t459 - parameters[29] * minus_rate_dot_rod_leg2
-            + parameters[30] * t367 - parameters[31] * t360;
-        let t470 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t472 = t217 + 0.8660254037844387 * t470;
-        let t475 = 0.2304 * (t472 * t472 + t3);
-        let t478 = t222 + t470 * t470 + t3;
-        let t480 = t478 - 0.3136 + 0.0576;
-        let t482 = t475 - t480 * t480;
-        ::overact::guard::reach(t482, "leg3")?;
-        let t483 = ::overact::math::sqrt(t482);
-        let t486 = t232 - 0.5 * t470;
-        let t487 = t486 * t486;
-        let t489 = 1.0 - 3.188775510204082 * t487;
-        ::overact::guard::reach(t489, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t489);
+                * (t396 - parameters[29] * t349 - parameters[31] * t358
+                    - parameters[32] * t330);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t215;
+        let t417 = parameters[24] * t300 + parameters[25] * (t334 - t299)
+            + parameters[26] * t338 - parameters[27] * t300 - parameters[28] * t315;
+        let t423 = t417 - parameters[29] * minus_rate_dot_rod_leg2
+            + parameters[30] * t330 - parameters[31] * t324;
+        let t429 = t188 + t196 * t196 + t3;
+        let t430 = t198 * t198;
+        let t432 = 0.2304 * (t429 - t430);
+        let t433 = t429 - 0.3136;
+        let t434 = t433 + 0.0576;
+        let t436 = t432 - t434 * t434;
+        ::overact::guard::reach(t436, "leg3")?;
+        let t437 = ::overact::math::sqrt(t436);
+        let t438 = 3.188775510204082 * t430;
+        let t439 = 1.0 - t438;
+        ::overact::guard::reach(t439, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t439);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t491 = 0.56 * c_rod_leg3;
-        let s_cross_leg3 = 2.0833333333333335 * t483 / t491;
+        let t441 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t437 / t441;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t493 = 1.0 / s_cross_leg3;
-        let t494 = 4.166666666666667 * t493;
-        let t495 = 1.0 / t475;
-        let t496 = 0.48 * t472;
-        let minus_c_arm_leg3 = t495 * (t496 * t480 + t14 * t483);
-        let c_cross_leg3 = (t478 - (0.0576 + t487) - 0.3136 * t489)
-            / (0.2688 * c_rod_leg3);
-        let s_arm_leg3 = t495 * (t496 * t483 - t14 * t480);
+        let t443 = 1.0 / s_cross_leg3;
+        let t444 = 4.166666666666667 * t443;
+        let t445 = 1.0 / t432;
+        let t448 = 0.48 * (t221 + 0.8660254037844387 * t196);
+        let minus_c_arm_leg3 = t445 * (t448 * t434 + t13 * t437);
+        let c_cross_leg3 = (-0.0576 + t433) / t441;
+        let s_arm_leg3 = t445 * (t448 * t437 - t13 * t434);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t514 = 0.5 * minus_c_armcross_leg3;
-        let t515 = 1.0 / c_rod_leg3;
-        let t516 = 1.7857142857142858 * t515;
-        let t517 = t486 * t516;
-        let garm_vx_leg3 = t494 * (t514 + 0.8660254037844387 * t517);
-        let t521 = 0.24 * c_cross_leg3;
-        let t523 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t462 = 0.5 * minus_c_armcross_leg3;
+        let t463 = 1.0 / c_rod_leg3;
+        let t464 = 1.7857142857142858 * t463;
+        let t465 = t198 * t464;
+        let garm_vx_leg3 = t444 * (t462 + 0.8660254037844387 * t465);
+        let t469 = 0.24 * c_cross_leg3;
+        let t471 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t530 = t514 * twist[0] + t523 * twist[1] - s_armcross_leg3 * twist[2];
-        let t531 = t279 - t280;
-        let rate_arm_leg3 = t494 * (t530 + t517 * t531);
-        let t535 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t516 * t531;
-        let t538 = rate_rod_leg3 * rate_rod_leg3;
-        let t539 = 0.5 * s_armcross_leg3;
-        let t541 = 0.8660254037844387 * s_armcross_leg3;
-        let t546 = c_cross_leg3 * t493;
-        let t550 = t521 * (t494 * t517);
-        let t552 = t539 * twist[0] + t541 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t546 * t530 - t550 * t531;
-        let rate_cross_leg3 = t516 * t552;
-        let t554 = rate_cross_leg3 * rate_cross_leg3;
-        let t555 = t538 + t554;
-        let t557 = t521 * t535 + t491 * t555;
-        let t558 = t486 * rate_cross_leg3;
-        let t561 = rate_cross_leg3 * t558 - t486 * t555;
-        let rate_dot_arm_leg3 = t494 * (t557 - t517 * t561);
-        let t566 = 9.81 * minus_c_arm_leg3;
-        let t569 = 9.81 * s_arm_leg3;
-        let t578 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t566
-            + parameters[36] * t569 + parameters[37] * rate_dot_arm_leg3
+        let t478 = t462 * twist[0] + t471 * twist[1] - s_armcross_leg3 * twist[2];
+        let t479 = t250 - t251;
+        let t480 = t465 * t479;
+        let rate_arm_leg3 = t444 * (t478 + t480);
+        let t483 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t464 * t479;
+        let t487 = rate_rod_leg3 * rate_rod_leg3;
+        let t488 = 0.5 * s_armcross_leg3;
+        let t490 = 0.8660254037844387 * s_armcross_leg3;
+        let t495 = c_cross_leg3 * t443;
+        let t498 = t465 * t495;
+        let t500 = t488 * twist[0] + t490 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t495 * t478 - t498 * t479;
+        let rate_cross_leg3 = t464 * t500;
+        let t502 = rate_cross_leg3 * rate_cross_leg3;
+        let t505 = t469 * t483 + 0.56 * c_rod_leg3 * (t487 + t502);
+        let t506 = t198 * t487;
+        let rate_dot_arm_leg3 = t444 * (t505 + t465 * t506);
+        let t511 = 9.81 * minus_c_arm_leg3;
+        let t514 = 9.81 * s_arm_leg3;
+        let t523 = parameters[34] * rate_dot_arm_leg3 + parameters[35] * t511
+            + parameters[36] * t514 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t581 = 3.188775510204082 * (t552 * t558);
-        let minus_rate_dot_rod_leg3 = t516 * t561;
-        let t583 = t581 + minus_rate_dot_rod_leg3;
-        let t585 = t552 * t552;
-        let t586 = 3.188775510204082 * t585;
-        let t595 = t486 * (rate_cross_leg3 * rate_rod_leg3);
-        let t599 = t550 * t561
-            - (t546 * t557 + 0.24 * s_cross_leg3 * t535 - t595 - t595);
-        let t600 = 1.7857142857142858 * t599;
-        let t604 = t566 + 0.24 * rate_dot_arm_leg3;
-        let t607 = t569 + 0.24 * t535;
-        let t609 = s_cross_leg3 * t604 - c_cross_leg3 * t607;
-        let t610 = c_rod_leg3 * t609;
-        let t613 = 0.8928571428571429 * t483
-            * (parameters[48] * t583 - parameters[47] * (t586 + t538)
-                + parameters[49] * t600 + parameters[50] * t610);
-        let t616 = t581 - minus_rate_dot_rod_leg3;
-        let t618 = t558 * t558;
-        let t619 = 3.188775510204082 * t618;
-        let s_rod_leg3 = 1.7857142857142858 * t486;
-        let rate_dot_cross_leg3 = t516 * t599;
-        let t625 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t628 = s_rod_leg3 * t609;
-        let t631 = 0.42857142857142855 * (t486 * s_cross_leg3)
-            * (parameters[47] * t616 - parameters[48] * (t619 + t538)
-                - parameters[49] * t625 - parameters[50] * t628);
-        let t633 = t599 - t595;
-        let t635 = 1.7857142857142858 * (t595 - t633);
-        let t638 = rate_rod_leg3 * (1.7857142857142858 * t552);
-        let t639 = t625 + t638;
-        let t640 = t638 + t639;
-        let t647 = s_cross_leg3 * t607 + c_cross_leg3 * t604;
-        let t651 = t613 - t631
-            - t521
-                * (parameters[47] * t635 + parameters[48] * t640 - parameters[49] * t554
-                    - parameters[50] * t647);
-        let t652 = t578 + t651;
-        let gcross_vx_leg3 = t516 * (t539 - t514 * t546 - 0.8660254037844387 * t550);
-        let t668 = parameters[41] * t639 - parameters[42] * t635 + parameters[43] * t616
-            - parameters[44] * t638 + parameters[45] * (t586 - t538);
-        let t676 = 1.7857142857142858 * t595;
-        let t687 = parameters[41] * t676 + parameters[42] * t640
-            + parameters[43] * (t538 - t619)
-            + parameters[44] * (1.7857142857142858 * t633) - parameters[45] * t583;
-        let t695 = s_rod_leg3
-            * (t668 + parameters[46] * t638 - parameters[48] * t647
-                + parameters[49] * t628)
+        let t524 = 0.8928571428571429 * t437;
+        let t525 = t439 * t502;
+        let t526 = t465 * t525;
+        let minus_minus_rate_dot_rod_leg3 = t464 * t506;
+        let t528 = t526 - minus_minus_rate_dot_rod_leg3;
+        let t535 = 0.24 * t483;
+        let t537 = t480 * rate_cross_leg3;
+        let t542 = 1.7857142857142858
+            * (t498 * t506 + t495 * t505 + s_cross_leg3 * t535 - t537 - t537);
+        let t546 = t511 + 0.24 * rate_dot_arm_leg3;
+        let t548 = t514 + t535;
+        let t550 = s_cross_leg3 * t546 - c_cross_leg3 * t548;
+        let t551 = c_rod_leg3 * t550;
+        let t556 = t526 + minus_minus_rate_dot_rod_leg3;
+        let t558 = t438 * t502;
+        let t562 = t465 * t542;
+        let s_rod_leg3 = 1.7857142857142858 * t198;
+        let t566 = s_rod_leg3 * t550;
+        let t569 = t465 * t524
+            * (parameters[47] * t556 - parameters[48] * (t558 + t487)
+                + parameters[49] * t562 - parameters[50] * t566);
+        let t570 = t524
+            * (parameters[48] * t528 - parameters[47] * (t525 + t487)
+                - parameters[49] * t542 + parameters[50] * t551) - t569;
+        let t571 = 1.7857142857142858 * t537;
+        let t572 = t542 + t571;
+        let t573 = t571 + t572;
+        let t576 = rate_rod_leg3 * (1.7857142857142858 * t500);
+        let t577 = t576 - t562;
+        let t578 = t576 + t577;
+        let t585 = s_cross_leg3 * t548 + c_cross_leg3 * t546;
+        let t590 = t523 + t570
+            - t469
+                * (parameters[47] * t573 + parameters[48] * t578 - parameters[49] * t502
+                    - parameters[50] * t585);
+        let gcross_vx_leg3 = t464 * (t488 - t462 * t495 - 0.8660254037844387 * t498);
+        let t606 = parameters[41] * t577 - parameters[42] * t573 + parameters[43] * t556
+            - parameters[44] * t576 + parameters[45] * (t525 - t487);
+        let t623 = parameters[41] * t571 + parameters[42] * t578
+            + parameters[43] * (t487 - t558) - parameters[44] * t572
+            - parameters[45] * t528;
+        let t631 = s_rod_leg3
+            * (t606 + parameters[46] * t576 - parameters[48] * t585
+                + parameters[49] * t566)
             + c_rod_leg3
-                * (t687 - parameters[46] * t676 + parameters[47] * t647
-                    + parameters[49] * t610);
-        let grod_vx_leg3 = 1.5464739353293548 * t515;
-        let t709 = parameters[42] * (3.188775510204082 * (t618 - t585))
-            - parameters[41] * t581 + parameters[43] * t625 + parameters[44] * t581
-            + parameters[45] * t600;
-        let t715 = t709 - parameters[46] * minus_rate_dot_rod_leg3
-            - parameters[47] * t628 - parameters[48] * t610;
-        let t718 = garm_vx_leg1 * t168 - minus_gcross_vx_leg1 * t209
-            + garm_vx_leg2 * t402 + gcross_vx_leg2 * t445 - minus_grod_vx_leg2 * t465
-            + garm_vx_leg3 * t652 + gcross_vx_leg3 * t695 + grod_vx_leg3 * t715;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * t60;
-        let t733 = parameters[8] * (3.188775510204082 * (t134 - t101))
-            - parameters[7] * t97 - parameters[9] * t141 + parameters[10] * t97
-            - parameters[11] * t116;
-        let t741 = garm_vy_leg1 * t168 - minus_gcross_vy_leg1 * t209
+                * (t623 - parameters[46] * t571 + parameters[47] * t585
+                    + parameters[49] * t551);
+        let grod_vx_leg3 = 1.5464739353293548 * t463;
+        let t644 = parameters[42] * (t558 - t525) - parameters[41] * t526
+            - parameters[43] * t562 + parameters[44] * t526 - parameters[45] * t542;
+        let t650 = t644 + parameters[46] * minus_minus_rate_dot_rod_leg3
+            - parameters[47] * t566 - parameters[48] * t551;
+        let t653 = garm_vx_leg1 * t146 - minus_gcross_vx_leg1 * t184
+            + garm_vx_leg2 * t363 + gcross_vx_leg2 * t404 - minus_grod_vx_leg2 * t423
+            + garm_vx_leg3 * t590 + gcross_vx_leg3 * t631 + grod_vx_leg3 * t650;
+        let garm_vy_leg1 = t35 * t45;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t37 * garm_vy_leg1);
+        let t669 = parameters[8] * (t114 - t83) - parameters[7] * t84
+            - parameters[9] * t118 + parameters[10] * t84 - parameters[11] * t99;
+        let t677 = garm_vy_leg1 * t146 - minus_gcross_vy_leg1 * t184
             + grod_vy_leg1
-                * (t733 - parameters[12] * minus_rate_dot_rod_leg1
-                    - parameters[13] * t144 - parameters[14] * t126);
-        let garm_vy_leg2 = t242 * (t270 + 0.5 * t245);
-        let minus_gcross_vy_leg2 = t244 * (t270 * t296 + t291 + 0.5 * t300);
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t243;
-        let garm_vy_leg3 = t494 * (t523 - 0.5 * t517);
-        let gcross_vy_leg3 = t516 * (t541 - t523 * t546 + 0.5 * t550);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t515;
-        let t771 = t741 + garm_vy_leg2 * t402 - minus_gcross_vy_leg2 * t445
-            - minus_grod_vy_leg2 * t465 + garm_vy_leg3 * t652 + gcross_vy_leg3 * t695
-            - minus_grod_vy_leg3 * t715;
-        let gcross_vz_leg2 = t244 * (s_armcross_leg2 * t296 - c_armcross_leg2);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t242;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t41;
-        let minus_gcross_vz_leg1 = grod_vy_leg1
-            * (c_armcross_leg1 - s_armcross_leg1 * t57);
-        let gcross_vz_leg3 = t516 * (s_armcross_leg3 * t546 + minus_c_armcross_leg3);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t494;
-        let t794 = gcross_vz_leg2 * t445 - minus_garm_vz_leg2 * t402
-            - (minus_garm_vz_leg1 * t168 + minus_gcross_vz_leg1 * t209)
-            + gcross_vz_leg3 * t695 - minus_garm_vz_leg3 * t652;
-        Ok([t718, t771, t794 + 9.81 * (parameters[51] + parameters[52])])
+                * (t669 + parameters[12] * minus_minus_rate_dot_rod_leg1
+                    - parameters[13] * t122 - parameters[14] * t107);
+        let garm_vy_leg2 = t214 * (t241 + 0.5 * t217);
+        let minus_gcross_vy_leg2 = t216 * (t241 * t268 + t263 + 0.5 * t271);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t215;
+        let garm_vy_leg3 = t444 * (t471 - 0.5 * t465);
+        let gcross_vy_leg3 = t464 * (t490 - t471 * t495 + 0.5 * t498);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t463;
+        let t707 = t677 + garm_vy_leg2 * t363 - minus_gcross_vy_leg2 * t404
+            - minus_grod_vy_leg2 * t423 + garm_vy_leg3 * t590 + gcross_vy_leg3 * t631
+            - minus_grod_vy_leg3 * t650;
+        let minus_gcross_vz_leg2 = t216 * (t213 * minus_s_arm_leg2);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t214;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t34);
+        let gcross_vz_leg3 = t464 * (t443 * s_arm_leg3);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t444;
+        let t727 = gcross_vz_leg3 * t631 - minus_garm_vz_leg3 * t590
+            - (minus_gcross_vz_leg2 * t404 + minus_garm_vz_leg2 * t363
+                + minus_garm_vz_leg1 * t146 + minus_gcross_vz_leg1 * t184);
+        Ok([t653, t707, t727 + 9.81 * (parameters[51] + parameters[52])])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///

@@ -238,7 +238,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 63 operations (29 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 0 signs, 73 intermediates.
+    /// 61 operations (27 additions, 31 multiplications, 3 divisions), 3 square roots, 4 trigonometric pairs, 0 signs, 71 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -251,30 +251,30 @@ impl DualV {
         ]);
         let t3 = 0.3950502153918333 + 0.28 * c1_leg1;
         let t8 = 0.28 * c1_leg2 - 0.3950502153918333 - t3;
-        let t14 = 0.10970563941232059 + 0.28 * s1_leg1;
-        let t15 = 0.10970563941232059 + 0.28 * s1_leg2 - t14;
-        let t18 = t8 * t8 + t15 * t15;
-        let t21 = (0.0784 - 0.25 * t18) / t18;
-        ::overact::guard::reach(t21, "leg1")?;
-        let t22 = ::overact::math::sqrt(t21);
-        let t24 = t3 + 0.5 * t8 - t15 * t22;
-        let t28 = 0.28 * c1_leg3 - 0.3950502153918333;
-        let t33 = 0.3950502153918333 + 0.28 * c1_leg4 - t28;
-        let t39 = 0.28 * s1_leg3 - 0.10970563941232059;
-        let t40 = 0.28 * s1_leg4 - 0.10970563941232059 - t39;
-        let t43 = t33 * t33 + t40 * t40;
-        let t46 = (0.0784 - 0.25 * t43) / t43;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t49 = t28 + 0.5 * t33 - t40 * t47;
-        let t55 = t14 + 0.5 * t15 + t8 * t22;
-        let t59 = t39 + 0.5 * t40 + t33 * t47;
-        let t62 = t49 - t24;
-        let t64 = t59 - t55;
-        let t70 = 1.0 / ::overact::math::sqrt(0.0484 * (t64 * t64 + t62 * t62));
+        let t12 = 0.28 * s1_leg1;
+        let t13 = 0.28 * s1_leg2 - t12;
+        let t16 = t8 * t8 + t13 * t13;
+        let t19 = (0.0784 - 0.25 * t16) / t16;
+        ::overact::guard::reach(t19, "leg1")?;
+        let t20 = ::overact::math::sqrt(t19);
+        let t22 = t3 + 0.5 * t8 - t13 * t20;
+        let t26 = 0.28 * c1_leg3 - 0.3950502153918333;
+        let t31 = 0.3950502153918333 + 0.28 * c1_leg4 - t26;
+        let t35 = 0.28 * s1_leg3;
+        let t36 = 0.28 * s1_leg4 - t35;
+        let t39 = t31 * t31 + t36 * t36;
+        let t42 = (0.0784 - 0.25 * t39) / t39;
+        ::overact::guard::reach(t42, "leg3")?;
+        let t43 = ::overact::math::sqrt(t42);
+        let t45 = t26 + 0.5 * t31 - t36 * t43;
+        let t52 = 0.10970563941232059 + t12 + 0.5 * t13 + t8 * t20;
+        let t57 = t35 - 0.10970563941232059 + 0.5 * t36 + t31 * t43;
+        let t60 = t45 - t22;
+        let t62 = t57 - t52;
+        let t68 = 1.0 / ::overact::math::sqrt(0.0484 * (t62 * t62 + t60 * t60));
         Ok([
-            0.5 * (t24 + t49), 0.5 * (t55 + t59),
-            ::overact::math::atan2(0.22 * t62 * t70, -(0.22 * t64 * t70)),
+            0.5 * (t22 + t45), 0.5 * (t52 + t57),
+            ::overact::math::atan2(0.22 * t60 * t68, -(0.22 * t62 * t68)),
         ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -476,7 +476,7 @@ impl DualV {
     ///
     /// Output: 4 x 3.
     ///
-    /// 88 operations (38 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 82 intermediates.
+    /// 80 operations (30 additions, 42 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 74 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -492,46 +492,46 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
-        let t21 = t3 + 0.3950502153918333;
-        let t24 = t21 * t21 + t10;
-        let t26 = 0.0784 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t31 = t24 * t27;
-        ::overact::guard::leg(t31, 0.07839913810297301, "leg2")?;
-        let t32 = 1.0 / t31;
-        let minus_g1_vx_leg2 = (t21 - (0.5 * t21 - t8 * t27)) * t32;
-        let t34 = pose[0] + t2;
-        let t35 = t34 + 0.3950502153918333;
-        let t38 = pose[1] - t6 + 0.10970563941232059;
-        let t40 = t38 * t38;
-        let t41 = t35 * t35 + t40;
-        let t43 = 0.0784 / t41 - 0.25;
-        ::overact::guard::reach(t43, "leg3")?;
-        let t44 = ::overact::math::sqrt(t43);
-        let t48 = t41 * t44;
-        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
-        let t49 = 1.0 / t48;
-        let g1_vx_leg3 = (t35 - (0.5 * t35 + t38 * t44)) * t49;
-        let t51 = t34 - 0.3950502153918333;
-        let t54 = t51 * t51 + t40;
-        let t56 = 0.0784 / t54 - 0.25;
-        ::overact::guard::reach(t56, "leg4")?;
-        let t57 = ::overact::math::sqrt(t56);
-        let t61 = t54 * t57;
-        ::overact::guard::leg(t61, 0.07839913810297301, "leg4")?;
-        let t62 = 1.0 / t61;
-        let minus_g1_vx_leg4 = (t51 - (0.5 * t51 - t38 * t57)) * t62;
-        let t64 = 0.5 * t8;
-        let g1_vy_leg1 = (t8 - (t64 - t4 * t14)) * t19;
-        let minus_g1_vy_leg2 = (t8 - (t64 + t21 * t27)) * t32;
-        let t73 = 0.5 * t38;
-        let g1_vy_leg3 = (t38 - (t73 - t35 * t44)) * t49;
-        let minus_g1_vy_leg4 = (t38 - (t73 + t51 * t57)) * t62;
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
+        let t18 = 1.0 / t17;
+        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
+        let t20 = t3 + 0.3950502153918333;
+        let t23 = t20 * t20 + t10;
+        let t25 = 0.0784 / t23 - 0.25;
+        ::overact::guard::reach(t25, "leg2")?;
+        let t26 = ::overact::math::sqrt(t25);
+        let t29 = t23 * t26;
+        ::overact::guard::leg(t29, 0.07839913810297301, "leg2")?;
+        let t30 = 1.0 / t29;
+        let minus_g1_vx_leg2 = (0.5 * t20 + t8 * t26) * t30;
+        let t32 = pose[0] + t2;
+        let t33 = t32 + 0.3950502153918333;
+        let t36 = pose[1] - t6 + 0.10970563941232059;
+        let t38 = t36 * t36;
+        let t39 = t33 * t33 + t38;
+        let t41 = 0.0784 / t39 - 0.25;
+        ::overact::guard::reach(t41, "leg3")?;
+        let t42 = ::overact::math::sqrt(t41);
+        let t45 = t39 * t42;
+        ::overact::guard::leg(t45, 0.07839913810297301, "leg3")?;
+        let t46 = 1.0 / t45;
+        let g1_vx_leg3 = (0.5 * t33 - t36 * t42) * t46;
+        let t48 = t32 - 0.3950502153918333;
+        let t51 = t48 * t48 + t38;
+        let t53 = 0.0784 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg4")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t57 = t51 * t54;
+        ::overact::guard::leg(t57, 0.07839913810297301, "leg4")?;
+        let t58 = 1.0 / t57;
+        let minus_g1_vx_leg4 = (0.5 * t48 + t36 * t54) * t58;
+        let t60 = 0.5 * t8;
+        let g1_vy_leg1 = (t60 + t4 * t14) * t18;
+        let minus_g1_vy_leg2 = (t60 - t20 * t26) * t30;
+        let t67 = 0.5 * t36;
+        let g1_vy_leg3 = (t67 + t33 * t42) * t46;
+        let minus_g1_vy_leg4 = (t67 - t48 * t54) * t58;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
@@ -603,7 +603,7 @@ impl DualV {
     ///
     /// Output: 3 x 4.
     ///
-    /// 204 operations (84 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 198 intermediates.
+    /// 196 operations (76 additions, 109 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 190 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -619,95 +619,95 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t10;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
-        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
+        let t18 = 1.0 / t17;
+        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
+        let t21 = t3 + 0.3950502153918333;
+        let t24 = t21 * t21 + t10;
+        let t26 = 0.0784 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t30 = t24 * t27;
+        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
+        let t31 = 1.0 / t30;
+        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
+        let t35 = pose[0] + t2;
+        let t36 = t35 + 0.3950502153918333;
+        let t39 = pose[1] - t6 + 0.10970563941232059;
+        let t41 = t39 * t39;
+        let t42 = t36 * t36 + t41;
+        let t44 = 0.0784 / t42 - 0.25;
+        ::overact::guard::reach(t44, "leg3")?;
+        let t45 = ::overact::math::sqrt(t44);
+        let t48 = t42 * t45;
+        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
+        let t49 = 1.0 / t48;
+        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
+        let t53 = t35 - 0.3950502153918333;
+        let t56 = t53 * t53 + t41;
+        let t58 = 0.0784 / t56 - 0.25;
+        ::overact::guard::reach(t58, "leg4")?;
+        let t59 = ::overact::math::sqrt(t58);
+        let t62 = t56 * t59;
+        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
+        let t63 = 1.0 / t62;
+        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
+        let t66 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t73 = 0.5 * t8;
-        let g1_vy_leg1 = (t8 - (t73 - t4 * t14)) * t19;
-        let minus_g1_vy_leg2 = (t8 - (t73 + t22 * t28)) * t33;
-        let t85 = 0.5 * t41;
-        let g1_vy_leg3 = (t41 - (t85 - t38 * t47)) * t52;
-        let minus_g1_vy_leg4 = (t41 - (t85 + t56 * t62)) * t67;
-        let t97 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t66, 25.429161076750646, "actuators")?;
+        let t67 = 1.0 / t66;
+        let t69 = 0.5 * t8;
+        let g1_vy_leg1 = (t69 + t4 * t14) * t18;
+        let minus_g1_vy_leg2 = (t69 - t21 * t27) * t31;
+        let t79 = 0.5 * t39;
+        let g1_vy_leg3 = (t79 + t36 * t45) * t49;
+        let minus_g1_vy_leg4 = (t79 - t53 * t59) * t63;
+        let t89 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t98 = t97 * t71;
-        let t107 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t97 * t98;
-        ::overact::guard::platform(t107, 25.592368899353342, "actuators")?;
-        let t108 = 1.0 / t107;
-        let t110 = g1_vy_leg1 - g1_vx_leg1 * t98;
+        let t90 = t89 * t67;
+        let t99 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t89 * t90;
+        ::overact::guard::platform(t99, 25.592368899353342, "actuators")?;
+        let t100 = 1.0 / t99;
+        let t102 = g1_vy_leg1 - g1_vx_leg1 * t90;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t137 = g1_vx_leg3 * g1_wz_leg3
+        let t129 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t138 = t137 * t71;
-        let t140 = g1_vy_leg3 * g1_wz_leg3
+        let t130 = t129 * t67;
+        let t132 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t97 * t138;
-        let t141 = t140 * t108;
-        let t152 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t137 * t138
-            - t140 * t141;
-        ::overact::guard::platform(t152, 0.3076928490286828, "actuators")?;
-        let t153 = 1.0 / t152;
-        let t158 = t153 * (minus_g1_wz_leg1 + g1_vx_leg1 * t138 + t141 * t110);
-        let t160 = t108 * t110 + t141 * t158;
-        let t167 = minus_g1_vx_leg2 * t98 - minus_g1_vy_leg2;
-        let t173 = t153 * (g1_wz_leg2 + minus_g1_vx_leg2 * t138 - t141 * t167);
-        let t175 = t108 * t167 - t141 * t173;
-        let t182 = g1_vy_leg3 - g1_vx_leg3 * t98;
-        let t188 = t153 * (g1_wz_leg3 - g1_vx_leg3 * t138 - t141 * t182);
-        let t190 = t108 * t182 - t141 * t188;
-        let t197 = minus_g1_vx_leg4 * t98 - minus_g1_vy_leg4;
-        let t203 = t153 * (minus_g1_vx_leg4 * t138 - minus_g1_wz_leg4 - t141 * t197);
-        let t205 = t108 * t197 - t141 * t203;
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t89 * t130;
+        let t133 = t132 * t100;
+        let t144 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t129 * t130
+            - t132 * t133;
+        ::overact::guard::platform(t144, 0.3076928490286828, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t150 = t145 * (minus_g1_wz_leg1 + g1_vx_leg1 * t130 + t133 * t102);
+        let t152 = t100 * t102 + t133 * t150;
+        let t159 = minus_g1_vx_leg2 * t90 - minus_g1_vy_leg2;
+        let t165 = t145 * (g1_wz_leg2 + minus_g1_vx_leg2 * t130 - t133 * t159);
+        let t167 = t100 * t159 - t133 * t165;
+        let t174 = g1_vy_leg3 - g1_vx_leg3 * t90;
+        let t180 = t145 * (g1_wz_leg3 - g1_vx_leg3 * t130 - t133 * t174);
+        let t182 = t100 * t174 - t133 * t180;
+        let t189 = minus_g1_vx_leg4 * t90 - minus_g1_vy_leg4;
+        let t195 = t145 * (minus_g1_vx_leg4 * t130 - minus_g1_wz_leg4 - t133 * t189);
+        let t197 = t100 * t189 - t133 * t195;
         Ok([
             [
-                g1_vx_leg1 * t71 - t98 * t160 + t138 * t158,
-                -(minus_g1_vx_leg2 * t71 + t98 * t175 + t138 * t173),
-                g1_vx_leg3 * t71 - t98 * t190 - t138 * t188,
-                -(minus_g1_vx_leg4 * t71 + t98 * t205 + t138 * t203),
+                g1_vx_leg1 * t67 - t90 * t152 + t130 * t150,
+                -(minus_g1_vx_leg2 * t67 + t90 * t167 + t130 * t165),
+                g1_vx_leg3 * t67 - t90 * t182 - t130 * t180,
+                -(minus_g1_vx_leg4 * t67 + t90 * t197 + t130 * t195),
             ],
-            [t160, t175, t190, t205],
-            [-t158, t173, t188, t203],
+            [t152, t167, t182, t197],
+            [-t150, t165, t180, t195],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -1133,7 +1133,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 179 operations (75 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 182 intermediates.
+    /// 171 operations (67 additions, 93 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 174 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1152,89 +1152,88 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t10;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
-        let t70 = g1_vx_leg1 * actuator_velocities[0]
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
+        let t18 = 1.0 / t17;
+        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
+        let t21 = t3 + 0.3950502153918333;
+        let t24 = t21 * t21 + t10;
+        let t26 = 0.0784 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t30 = t24 * t27;
+        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
+        let t31 = 1.0 / t30;
+        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
+        let t35 = pose[0] + t2;
+        let t36 = t35 + 0.3950502153918333;
+        let t39 = pose[1] - t6 + 0.10970563941232059;
+        let t41 = t39 * t39;
+        let t42 = t36 * t36 + t41;
+        let t44 = 0.0784 / t42 - 0.25;
+        ::overact::guard::reach(t44, "leg3")?;
+        let t45 = ::overact::math::sqrt(t44);
+        let t48 = t42 * t45;
+        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
+        let t49 = 1.0 / t48;
+        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
+        let t53 = t35 - 0.3950502153918333;
+        let t56 = t53 * t53 + t41;
+        let t58 = 0.0784 / t56 - 0.25;
+        ::overact::guard::reach(t58, "leg4")?;
+        let t59 = ::overact::math::sqrt(t58);
+        let t62 = t56 * t59;
+        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
+        let t63 = 1.0 / t62;
+        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
+        let t66 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t77 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t73 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t77, 25.429161076750646, "actuators")?;
-        let t78 = 1.0 / t77;
-        let t80 = 0.5 * t8;
-        let g1_vy_leg1 = (t8 - (t80 - t4 * t14)) * t19;
-        let minus_g1_vy_leg2 = (t8 - (t80 + t22 * t28)) * t33;
-        let t92 = 0.5 * t41;
-        let g1_vy_leg3 = (t41 - (t92 - t38 * t47)) * t52;
-        let minus_g1_vy_leg4 = (t41 - (t92 + t56 * t62)) * t67;
-        let t104 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t73, 25.429161076750646, "actuators")?;
+        let t74 = 1.0 / t73;
+        let t76 = 0.5 * t8;
+        let g1_vy_leg1 = (t76 + t4 * t14) * t18;
+        let minus_g1_vy_leg2 = (t76 - t21 * t27) * t31;
+        let t86 = 0.5 * t39;
+        let g1_vy_leg3 = (t86 + t36 * t45) * t49;
+        let minus_g1_vy_leg4 = (t86 - t53 * t59) * t63;
+        let t96 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t105 = t104 * t78;
-        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t104 * t105;
-        ::overact::guard::platform(t114, 25.592368899353342, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t124 = g1_vy_leg1 * actuator_velocities[0]
+        let t97 = t96 * t74;
+        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t96 * t97;
+        ::overact::guard::platform(t106, 25.592368899353342, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t116 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t70 * t105;
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t66 * t97;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t151 = g1_vx_leg3 * g1_wz_leg3
+        let t143 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t152 = t151 * t78;
-        let t154 = g1_vy_leg3 * g1_wz_leg3
+        let t144 = t143 * t74;
+        let t146 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t104 * t152;
-        let t155 = t154 * t115;
-        let t166 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t151 * t152
-            - t154 * t155;
-        ::overact::guard::platform(t166, 0.3076928490286828, "actuators")?;
-        let t177 = g1_wz_leg2 * actuator_velocities[1]
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t96 * t144;
+        let t147 = t146 * t107;
+        let t158 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t70 * t152 - t155 * t124;
-        let t178 = t177 / t166;
-        let t180 = t115 * t124 - t155 * t178;
-        Ok([t70 * t78 - t105 * t180 - t152 * t178, t180, t178])
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t66 * t144 - t147 * t116;
+        let t169 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t143 * t144
+            - t146 * t147;
+        ::overact::guard::platform(t169, 0.3076928490286828, "actuators")?;
+        let t170 = t158 / t169;
+        let t172 = t107 * t116 - t147 * t170;
+        Ok([t66 * t74 - t97 * t172 - t144 * t170, t172, t170])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1391,13 +1390,13 @@ impl DualV {
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
             + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t196 * t244;
         let t247 = t246 * t207;
-        let t258 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+        let t258 = g1_wz_leg2 * t91 - minus_g1_wz_leg1 * t52 + g1_wz_leg3 * t138
+            - minus_g1_wz_leg4 * t178 - t180 * t244 - t247 * t216;
+        let t269 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t243 * t244
             - t246 * t247;
-        ::overact::guard::platform(t258, 0.3076928490286828, "actuators")?;
-        let t269 = g1_wz_leg2 * t91 - minus_g1_wz_leg1 * t52 + g1_wz_leg3 * t138
-            - minus_g1_wz_leg4 * t178 - t180 * t244 - t247 * t216;
-        let t270 = t269 / t258;
+        ::overact::guard::platform(t269, 0.3076928490286828, "actuators")?;
+        let t270 = t258 / t269;
         let t272 = t207 * t216 - t247 * t270;
         Ok([t180 * t188 - t197 * t272 - t244 * t270, t272, t270])
     }
@@ -1411,7 +1410,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 456 operations (150 additions, 298 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 326 intermediates.
+    /// 436 operations (155 additions, 273 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 306 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1425,7 +1424,8 @@ impl DualV {
         let t3 = pose[0] - t2;
         let t4 = t3 - 0.3950502153918333;
         let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
+        let t7 = t6 + -0.10970563941232059;
+        let t8 = pose[1] + t7;
         let t10 = t8 * t8;
         let t11 = t4 * t4 + t10;
         let t13 = 0.0784 / t11 - 0.25;
@@ -1437,29 +1437,26 @@ impl DualV {
         ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
         let t19 = 1.0 / t18;
         let g1_vx_leg1 = t17 * t19;
-        let t21 = t6 * acceleration[2];
-        let t23 = t2 * twist[2];
-        let t24 = twist[2] * t23;
-        let t25 = acceleration[0] - t21 + t24;
+        let t21 = t2 * twist[2];
+        let t24 = twist[2] * t21 - t6 * acceleration[2];
+        let t25 = acceleration[0] + t24;
         let t27 = 0.5 * t8;
         let t29 = t27 - t4 * t14;
         let t30 = t8 - t29;
-        let t31 = t2 * acceleration[2];
-        let t33 = t6 * twist[2];
-        let t34 = twist[2] * t33;
-        let t35 = acceleration[1] - t31 - t34;
+        let t31 = t6 * twist[2];
+        let t34 = twist[2] * t31 + t2 * acceleration[2];
+        let t35 = acceleration[1] - t34;
         let minus_g2_vx_leg1 = t16 * t19;
-        let t39 = twist[0] - t33;
+        let t39 = twist[0] - t31;
         let minus_g2_vy_leg1 = t29 * t19;
-        let t42 = twist[1] - t23;
+        let t42 = twist[1] - t21;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
         let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
         let g1_vy_leg1 = t30 * t19;
         let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
         let t52 = rate_1_leg1 * rate_1_leg1;
-        let t53 = t11 - 0.1568;
-        let t54 = 0.5 * t53;
+        let t54 = 0.5 * (t11 - 0.1568);
         let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
         let t58 = g1_vx_leg1 * rate_dot_1_leg1;
         let t59 = g1_vy_leg1 * rate_dot_1_leg1;
@@ -1467,242 +1464,239 @@ impl DualV {
         let t63 = minus_g1_wz_leg1 * rate_dot_1_leg1;
         let t74 = t16 * t25 + t29 * t35 + 0.0784 * t52;
         let minus_rate_dot_2_leg1 = t19 * (t74 + t45 * t54);
+        let t78 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t79 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t88 = t45 * (3.5714285714285716 * t18)
-            + minus_rate_dot_2_leg1 * (1.7857142857142858 * t53);
-        let t94 = 3.5714285714285716 * (t18 * t52)
-            + 1.7857142857142858 * (t53 * rate_dot_1_leg1);
-        let t103 = 3.5714285714285716 * t74;
-        let t105 = 3.5714285714285716 * t47;
-        let t117 = rate_1_leg1 + minus_rate_2_leg1;
-        let t118 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t120 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t122 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t127 = minus_rate_2_leg1 + twist[2];
-        let t130 = 1.0 - g2_wz_leg1;
-        let t135 = t3 + 0.3950502153918333;
-        let t138 = t135 * t135 + t10;
-        let t140 = 0.0784 / t138 - 0.25;
-        ::overact::guard::reach(t140, "leg2")?;
-        let t141 = ::overact::math::sqrt(t140);
-        let t143 = 0.5 * t135 - t8 * t141;
-        let t144 = t135 - t143;
-        let t145 = t138 * t141;
-        ::overact::guard::leg(t145, 0.07839913810297301, "leg2")?;
-        let t146 = 1.0 / t145;
-        let minus_g1_vx_leg2 = t144 * t146;
-        let t150 = t27 + t135 * t141;
-        let t151 = t8 - t150;
-        let g2_vx_leg2 = t143 * t146;
-        let g2_vy_leg2 = t150 * t146;
+        let t83 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t84 = 3.5714285714285716 * t25;
+        let t88 = 3.5714285714285716 * t35;
+        let t92 = pose[0] + t2;
+        let t93 = t92 + 0.3950502153918333;
+        let t95 = pose[1] - t7;
+        let t97 = t95 * t95;
+        let t98 = t93 * t93 + t97;
+        let t100 = 0.0784 / t98 - 0.25;
+        ::overact::guard::reach(t100, "leg3")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let t103 = 0.5 * t93 + t95 * t101;
+        let t104 = t93 - t103;
+        let c12_leg3 = 3.5714285714285716 * t104;
+        let t107 = 0.5 * t95;
+        let t109 = t107 - t93 * t101;
+        let t110 = t95 - t109;
+        let s12_leg3 = 3.5714285714285716 * t110;
+        let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
+        let t114 = acceleration[0] - t24;
+        let t116 = acceleration[1] + t34;
+        let t118 = t104 * t114 + t110 * t116;
+        let s3_leg3 = s_phi * c12_leg3 - c_phi * s12_leg3;
+        let t124 = t98 * t101;
+        ::overact::guard::leg(t124, 0.07839913810297301, "leg3")?;
+        let t125 = 1.0 / t124;
+        let g1_vx_leg3 = t104 * t125;
+        let t127 = twist[0] + t31;
+        let g1_vy_leg3 = t110 * t125;
+        let t130 = twist[1] + t21;
+        let rate_1_leg3 = g1_vx_leg3 * t127 + g1_vy_leg3 * t130;
+        let t133 = rate_1_leg3 * rate_1_leg3;
+        let t136 = t98 - 0.1568;
+        let minus_g2_vx_leg3 = t103 * t125;
+        let minus_g2_vy_leg3 = t109 * t125;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t127 + minus_g2_vy_leg3 * t130;
+        let t142 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t144 = t118 + 0.0784 * t142;
+        let t145 = 0.5 * t136;
+        let rate_dot_1_leg3 = t125 * (t144 + t133 * t145);
+        let t156 = t103 * t114 + t109 * t116 + 0.0784 * t133;
+        let minus_rate_dot_2_leg3 = t125 * (t156 + t142 * t145);
+        let t163 = c3_leg3 * (3.5714285714285716 * t118)
+            + s3_leg3
+                * (3.5714285714285716 * (t124 * t133)
+                    + 1.7857142857142858 * (t136 * rate_dot_1_leg3)
+                    - 0.28 * minus_rate_dot_2_leg3);
+        let t164 = 0.11 * acceleration[2];
+        let t165 = t163 - t164;
+        let t167 = 0.39285714285714285 * (t164 - t165);
+        let t171 = 3.5714285714285716 * t74;
+        let t173 = 3.5714285714285716 * t47;
+        let t185 = rate_1_leg1 + minus_rate_2_leg1;
+        let t186 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t188 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t190 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t195 = minus_rate_2_leg1 + twist[2];
+        let t198 = 1.0 - g2_wz_leg1;
+        let t203 = t3 + 0.3950502153918333;
+        let t206 = t203 * t203 + t10;
+        let t208 = 0.0784 / t206 - 0.25;
+        ::overact::guard::reach(t208, "leg2")?;
+        let t209 = ::overact::math::sqrt(t208);
+        let t211 = 0.5 * t203 - t8 * t209;
+        let t212 = t203 - t211;
+        let t213 = t206 * t209;
+        ::overact::guard::leg(t213, 0.07839913810297301, "leg2")?;
+        let t214 = 1.0 / t213;
+        let minus_g1_vx_leg2 = t212 * t214;
+        let t218 = t27 + t203 * t209;
+        let t219 = t8 - t218;
+        let g2_vx_leg2 = t211 * t214;
+        let g2_vy_leg2 = t218 * t214;
         let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t159 = rate_2_leg2 * rate_2_leg2;
-        let t161 = t144 * t25 + t151 * t35 + 0.0784 * t159;
-        let minus_g1_vy_leg2 = t151 * t146;
+        let t227 = rate_2_leg2 * rate_2_leg2;
+        let t229 = t212 * t25 + t219 * t35 + 0.0784 * t227;
+        let minus_g1_vy_leg2 = t219 * t214;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t166 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t167 = t138 - 0.1568;
-        let t168 = 0.5 * t167;
-        let minus_rate_dot_1_leg2 = t146 * (t161 + t166 * t168);
-        let t172 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t173 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t234 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t236 = 0.5 * (t206 - 0.1568);
+        let minus_rate_dot_1_leg2 = t214 * (t229 + t234 * t236);
+        let t240 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t241 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t177 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t188 = t143 * t25 + t150 * t35 + 0.0784 * t166;
-        let rate_dot_2_leg2 = t146 * (t188 + t159 * t168);
+        let t245 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t256 = t211 * t25 + t218 * t35 + 0.0784 * t234;
+        let rate_dot_2_leg2 = t214 * (t256 + t227 * t236);
+        let t260 = g2_vx_leg2 * rate_dot_2_leg2;
+        let t261 = g2_vy_leg2 * rate_dot_2_leg2;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t202 = t159 * (3.5714285714285716 * t145)
-            + rate_dot_2_leg2 * (1.7857142857142858 * t167);
-        let t208 = 3.5714285714285716 * (t145 * t166)
-            + 1.7857142857142858 * (t167 * minus_rate_dot_1_leg2);
-        let t217 = 3.5714285714285716 * t188;
-        let t219 = 3.5714285714285716 * t161;
-        let t231 = minus_rate_1_leg2 + rate_2_leg2;
-        let t232 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t234 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t236 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t241 = twist[2] - rate_2_leg2;
-        let t244 = minus_g2_wz_leg2 + 1.0;
-        let t249 = pose[0] + t2;
-        let t250 = t249 + 0.3950502153918333;
-        let t253 = pose[1] - t6 + 0.10970563941232059;
-        let t255 = t253 * t253;
-        let t256 = t250 * t250 + t255;
-        let t258 = 0.0784 / t256 - 0.25;
-        ::overact::guard::reach(t258, "leg3")?;
-        let t259 = ::overact::math::sqrt(t258);
-        let t261 = 0.5 * t250 + t253 * t259;
-        let t262 = t250 - t261;
-        let t263 = t256 * t259;
-        ::overact::guard::leg(t263, 0.07839913810297301, "leg3")?;
-        let t264 = 1.0 / t263;
-        let g1_vx_leg3 = t262 * t264;
-        let t267 = acceleration[0] + t21 - t24;
-        let t269 = 0.5 * t253;
-        let t271 = t269 - t250 * t259;
-        let t272 = t253 - t271;
-        let t274 = acceleration[1] + t31 + t34;
-        let minus_g2_vx_leg3 = t261 * t264;
-        let t278 = twist[0] + t33;
-        let minus_g2_vy_leg3 = t271 * t264;
-        let t281 = twist[1] + t23;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t278 + minus_g2_vy_leg3 * t281;
-        let t284 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t286 = t262 * t267 + t272 * t274 + 0.0784 * t284;
-        let g1_vy_leg3 = t272 * t264;
-        let rate_1_leg3 = g1_vx_leg3 * t278 + g1_vy_leg3 * t281;
-        let t291 = rate_1_leg3 * rate_1_leg3;
-        let t292 = t256 - 0.1568;
-        let t293 = 0.5 * t292;
-        let rate_dot_1_leg3 = t264 * (t286 + t291 * t293);
-        let t297 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t298 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t265 = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let t275 = 3.5714285714285716 * t256;
+        let t277 = 3.5714285714285716 * t229;
+        let t289 = minus_rate_1_leg2 + rate_2_leg2;
+        let t290 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t292 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t294 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t299 = twist[2] - rate_2_leg2;
+        let t302 = minus_g2_wz_leg2 + 1.0;
+        let t307 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t308 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t302 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t313 = t261 * t267 + t271 * t274 + 0.0784 * t291;
-        let minus_rate_dot_2_leg3 = t264 * (t313 + t284 * t293);
+        let t312 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t319 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t320 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t327 = t284 * (3.5714285714285716 * t263)
-            + minus_rate_dot_2_leg3 * (1.7857142857142858 * t292);
-        let t333 = 3.5714285714285716 * (t263 * t291)
-            + 1.7857142857142858 * (t292 * rate_dot_1_leg3);
-        let t342 = 3.5714285714285716 * t313;
-        let t344 = 3.5714285714285716 * t286;
-        let t356 = rate_1_leg3 + minus_rate_2_leg3;
-        let t357 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t359 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t361 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t366 = minus_rate_2_leg3 + twist[2];
-        let t369 = minus_g2_wz_leg3 + 1.0;
-        let t374 = t249 - 0.3950502153918333;
-        let t377 = t374 * t374 + t255;
-        let t379 = 0.0784 / t377 - 0.25;
-        ::overact::guard::reach(t379, "leg4")?;
-        let t380 = ::overact::math::sqrt(t379);
-        let t382 = 0.5 * t374 - t253 * t380;
-        let t383 = t374 - t382;
-        let t384 = t377 * t380;
-        ::overact::guard::leg(t384, 0.07839913810297301, "leg4")?;
-        let t385 = 1.0 / t384;
-        let minus_g1_vx_leg4 = t383 * t385;
-        let t389 = t269 + t374 * t380;
-        let t390 = t253 - t389;
-        let g2_vx_leg4 = t382 * t385;
-        let g2_vy_leg4 = t389 * t385;
-        let rate_2_leg4 = g2_vx_leg4 * t278 + g2_vy_leg4 * t281;
-        let t398 = rate_2_leg4 * rate_2_leg4;
-        let t400 = t383 * t267 + t390 * t274 + 0.0784 * t398;
-        let minus_g1_vy_leg4 = t390 * t385;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t278 + minus_g1_vy_leg4 * t281;
-        let t405 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t406 = t377 - 0.1568;
-        let t407 = 0.5 * t406;
-        let minus_rate_dot_1_leg4 = t385 * (t400 + t405 * t407);
-        let t411 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t412 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let t324 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t325 = 3.5714285714285716 * t114;
+        let t329 = 3.5714285714285716 * t116;
+        let t333 = 0.39285714285714285 * t163;
+        let t337 = 3.5714285714285716 * t156;
+        let t339 = 3.5714285714285716 * t144;
+        let t351 = rate_1_leg3 + minus_rate_2_leg3;
+        let t352 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t354 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t356 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t361 = minus_rate_2_leg3 + twist[2];
+        let t364 = minus_g2_wz_leg3 + 1.0;
+        let t369 = t92 - 0.3950502153918333;
+        let t372 = t369 * t369 + t97;
+        let t374 = 0.0784 / t372 - 0.25;
+        ::overact::guard::reach(t374, "leg4")?;
+        let t375 = ::overact::math::sqrt(t374);
+        let t377 = 0.5 * t369 - t95 * t375;
+        let t378 = t369 - t377;
+        let t379 = t372 * t375;
+        ::overact::guard::leg(t379, 0.07839913810297301, "leg4")?;
+        let t380 = 1.0 / t379;
+        let minus_g1_vx_leg4 = t378 * t380;
+        let t384 = t107 + t369 * t375;
+        let t385 = t95 - t384;
+        let g2_vx_leg4 = t377 * t380;
+        let g2_vy_leg4 = t384 * t380;
+        let rate_2_leg4 = g2_vx_leg4 * t127 + g2_vy_leg4 * t130;
+        let t393 = rate_2_leg4 * rate_2_leg4;
+        let t395 = t378 * t114 + t385 * t116 + 0.0784 * t393;
+        let minus_g1_vy_leg4 = t385 * t380;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t127 + minus_g1_vy_leg4 * t130;
+        let t400 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t402 = 0.5 * (t372 - 0.1568);
+        let minus_rate_dot_1_leg4 = t380 * (t395 + t400 * t402);
+        let t406 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t407 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t416 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t427 = t382 * t267 + t389 * t274 + 0.0784 * t405;
-        let rate_dot_2_leg4 = t385 * (t427 + t398 * t407);
+        let t411 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t422 = t377 * t114 + t384 * t116 + 0.0784 * t400;
+        let rate_dot_2_leg4 = t380 * (t422 + t393 * t402);
+        let t426 = g2_vx_leg4 * rate_dot_2_leg4;
+        let t427 = g2_vy_leg4 * rate_dot_2_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t441 = t398 * (3.5714285714285716 * t384)
-            + rate_dot_2_leg4 * (1.7857142857142858 * t406);
-        let t447 = 3.5714285714285716 * (t384 * t405)
-            + 1.7857142857142858 * (t406 * minus_rate_dot_1_leg4);
-        let t456 = 3.5714285714285716 * t427;
-        let t458 = 3.5714285714285716 * t400;
-        let t470 = minus_rate_1_leg4 + rate_2_leg4;
-        let t471 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t473 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t475 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t480 = twist[2] - rate_2_leg4;
-        let t483 = 1.0 - g2_wz_leg4;
-        let t489 = 9.090909090909092 * (t34 + t31);
-        let t491 = 9.090909090909092 * (t21 - t24);
+        let t431 = g2_wz_leg4 * rate_dot_2_leg4;
+        let t441 = 3.5714285714285716 * t422;
+        let t443 = 3.5714285714285716 * t395;
+        let t455 = minus_rate_1_leg4 + rate_2_leg4;
+        let t456 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t458 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t460 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t465 = twist[2] - rate_2_leg4;
+        let t468 = 1.0 - g2_wz_leg4;
+        let t473 = 9.090909090909092 * t34;
+        let t474 = 9.090909090909092 * t24;
         Ok([
             [
                 t58, t58, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vx_leg1 * t88 + minus_g2_vx_leg1 * t94),
-                g1_vx_leg1 * t103 + minus_g2_vx_leg1 * t105, 0.0784 * t58, t117 * t118,
-                ::overact::math::signed(t118, t117), -t118, minus_g2_vx_leg1 * t127,
-                ::overact::math::signed(minus_g2_vx_leg1, t127), minus_g2_vx_leg1, t172, t172,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t78,
+                t84 - 0.28 * (t58 + t78), g1_vx_leg1 * t171 + minus_g2_vx_leg1 * t173, 0.0784 * t58,
+                t185 * t186, ::overact::math::signed(t186, t185), -t186, minus_g2_vx_leg1 * t195,
+                ::overact::math::signed(minus_g2_vx_leg1, t195), minus_g2_vx_leg1, t240, t240,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                g2_vx_leg2 * rate_dot_2_leg2, -(minus_g1_vx_leg2 * t202 + g2_vx_leg2 * t208),
-                -(minus_g1_vx_leg2 * t217 + g2_vx_leg2 * t219), 0.0784 * t172, t231 * t232,
-                ::overact::math::signed(t232, t231), t232, -(g2_vx_leg2 * t241),
-                -::overact::math::signed(g2_vx_leg2, t241), -g2_vx_leg2, t297, t297,
-                g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vx_leg3 * t327 + minus_g2_vx_leg3 * t333),
-                g1_vx_leg3 * t342 + minus_g2_vx_leg3 * t344, 0.0784 * t297, t356 * t357,
-                ::overact::math::signed(t357, t356), -t357, minus_g2_vx_leg3 * t366,
-                ::overact::math::signed(minus_g2_vx_leg3, t366), minus_g2_vx_leg3, t411, t411,
+                t260, t84 - 0.28 * (t240 + t260), -(minus_g1_vx_leg2 * t275 + g2_vx_leg2 * t277),
+                0.0784 * t240, t289 * t290, ::overact::math::signed(t290, t289), t290,
+                -(g2_vx_leg2 * t299), -::overact::math::signed(g2_vx_leg2, t299), -g2_vx_leg2, t307,
+                t307, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t319, t325 - 0.28 * (t307 + t319),
+                g1_vx_leg3 * t337 + minus_g2_vx_leg3 * t339, 0.0784 * t307, t351 * t352,
+                ::overact::math::signed(t352, t351), -t352, minus_g2_vx_leg3 * t361,
+                ::overact::math::signed(minus_g2_vx_leg3, t361), minus_g2_vx_leg3, t406, t406,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                g2_vx_leg4 * rate_dot_2_leg4, -(minus_g1_vx_leg4 * t441 + g2_vx_leg4 * t447),
-                -(minus_g1_vx_leg4 * t456 + g2_vx_leg4 * t458), 0.0784 * t411, t470 * t471,
-                ::overact::math::signed(t471, t470), t471, -(g2_vx_leg4 * t480),
-                -::overact::math::signed(g2_vx_leg4, t480), -g2_vx_leg4, 0.0, -t489, -t491,
-                acceleration[0],
+                t426, t325 - 0.28 * (t406 + t426), -(minus_g1_vx_leg4 * t441 + g2_vx_leg4 * t443),
+                0.0784 * t406, t455 * t456, ::overact::math::signed(t456, t455), t456,
+                -(g2_vx_leg4 * t465), -::overact::math::signed(g2_vx_leg4, t465), -g2_vx_leg4, 0.0,
+                -t473, t474, acceleration[0],
             ],
             [
                 t59, t59, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t88 + minus_g2_vy_leg1 * t94),
-                g1_vy_leg1 * t103 + minus_g2_vy_leg1 * t105, 0.0784 * t59, t117 * t120,
-                ::overact::math::signed(t120, t117), -t120, minus_g2_vy_leg1 * t127,
-                ::overact::math::signed(minus_g2_vy_leg1, t127), minus_g2_vy_leg1, t173, t173,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t79,
+                t88 - 0.28 * (t59 + t79), g1_vy_leg1 * t171 + minus_g2_vy_leg1 * t173, 0.0784 * t59,
+                t185 * t188, ::overact::math::signed(t188, t185), -t188, minus_g2_vy_leg1 * t195,
+                ::overact::math::signed(minus_g2_vy_leg1, t195), minus_g2_vy_leg1, t241, t241,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                g2_vy_leg2 * rate_dot_2_leg2, -(minus_g1_vy_leg2 * t202 + g2_vy_leg2 * t208),
-                -(minus_g1_vy_leg2 * t217 + g2_vy_leg2 * t219), 0.0784 * t173, t231 * t234,
-                ::overact::math::signed(t234, t231), t234, -(g2_vy_leg2 * t241),
-                -::overact::math::signed(g2_vy_leg2, t241), -g2_vy_leg2, t298, t298,
-                g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vy_leg3 * t327 + minus_g2_vy_leg3 * t333),
-                g1_vy_leg3 * t342 + minus_g2_vy_leg3 * t344, 0.0784 * t298, t356 * t359,
-                ::overact::math::signed(t359, t356), -t359, minus_g2_vy_leg3 * t366,
-                ::overact::math::signed(minus_g2_vy_leg3, t366), minus_g2_vy_leg3, t412, t412,
+                t261, t88 - 0.28 * (t241 + t261), -(minus_g1_vy_leg2 * t275 + g2_vy_leg2 * t277),
+                0.0784 * t241, t289 * t292, ::overact::math::signed(t292, t289), t292,
+                -(g2_vy_leg2 * t299), -::overact::math::signed(g2_vy_leg2, t299), -g2_vy_leg2, t308,
+                t308, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t320, t329 - 0.28 * (t308 + t320),
+                g1_vy_leg3 * t337 + minus_g2_vy_leg3 * t339, 0.0784 * t308, t351 * t354,
+                ::overact::math::signed(t354, t351), -t354, minus_g2_vy_leg3 * t361,
+                ::overact::math::signed(minus_g2_vy_leg3, t361), minus_g2_vy_leg3, t407, t407,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                g2_vy_leg4 * rate_dot_2_leg4, -(minus_g1_vy_leg4 * t441 + g2_vy_leg4 * t447),
-                -(minus_g1_vy_leg4 * t456 + g2_vy_leg4 * t458), 0.0784 * t412, t470 * t473,
-                ::overact::math::signed(t473, t470), t473, -(g2_vy_leg4 * t480),
-                -::overact::math::signed(g2_vy_leg4, t480), -g2_vy_leg4, 0.0, t491, -t489,
-                acceleration[1],
+                t427, t329 - 0.28 * (t407 + t427), -(minus_g1_vy_leg4 * t441 + g2_vy_leg4 * t443),
+                0.0784 * t407, t455 * t458, ::overact::math::signed(t458, t455), t458,
+                -(g2_vy_leg4 * t465), -::overact::math::signed(g2_vy_leg4, t465), -g2_vy_leg4, 0.0,
+                -t474, -t473, acceleration[1],
             ],
             [
                 -t63, -t63, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), minus_g1_wz_leg1 * t88 + g2_wz_leg1 * t94,
-                -(minus_g1_wz_leg1 * t103 + g2_wz_leg1 * t105), -(0.0784 * t63), -(t117 * t122),
-                -::overact::math::signed(t122, t117), t122, t127 * t130,
-                ::overact::math::signed(t130, t127), t130, -t177, -t177,
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t83,
+                t167 + 0.28 * (t63 + t83), -(minus_g1_wz_leg1 * t171 + g2_wz_leg1 * t173),
+                -(0.0784 * t63), -(t185 * t190), -::overact::math::signed(t190, t185), t190,
+                t195 * t198, ::overact::math::signed(t198, t195), t198, -t245, -t245,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(minus_g2_wz_leg2 * rate_dot_2_leg2), g1_wz_leg2 * t202 + minus_g2_wz_leg2 * t208,
-                g1_wz_leg2 * t217 + minus_g2_wz_leg2 * t219, -(0.0784 * t177), -(t231 * t236),
-                -::overact::math::signed(t236, t231), -t236, t241 * t244,
-                ::overact::math::signed(t244, t241), t244, t302, t302, g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3,
-                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                -(g1_wz_leg3 * t327 + minus_g2_wz_leg3 * t333),
-                g1_wz_leg3 * t342 + minus_g2_wz_leg3 * t344, 0.0784 * t302, t356 * t361,
-                ::overact::math::signed(t361, t356), -t361, t366 * t369,
-                ::overact::math::signed(t369, t366), t369, t416, t416,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t265,
+                t167 + 0.28 * (t245 + t265), g1_wz_leg2 * t275 + minus_g2_wz_leg2 * t277,
+                -(0.0784 * t245), -(t289 * t294), -::overact::math::signed(t294, t289), -t294,
+                t299 * t302, ::overact::math::signed(t302, t299), t302, t312, t312,
+                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3, t324, t333 - 0.28 * (t312 + t324),
+                g1_wz_leg3 * t337 + minus_g2_wz_leg3 * t339, 0.0784 * t312, t351 * t356,
+                ::overact::math::signed(t356, t351), -t356, t361 * t364,
+                ::overact::math::signed(t364, t361), t364, t411, t411,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg4 * t441 + g2_wz_leg4 * t447),
-                -(minus_g1_wz_leg4 * t456 + g2_wz_leg4 * t458), 0.0784 * t416, t470 * t475,
-                ::overact::math::signed(t475, t470), t475, t480 * t483,
-                ::overact::math::signed(t483, t480), t483, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                t431, t333 - 0.28 * (t411 + t431), -(minus_g1_wz_leg4 * t441 + g2_wz_leg4 * t443),
+                0.0784 * t411, t455 * t460, ::overact::math::signed(t460, t455), t460, t465 * t468,
+                ::overact::math::signed(t468, t465), t468, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t165, 0.0,
             ],
         ])
     }
@@ -1717,7 +1711,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 375 operations (126 additions, 245 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 257 intermediates.
+    /// 371 operations (122 additions, 245 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 253 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1741,20 +1735,18 @@ impl DualV {
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t10;
-        let t14 = 0.11 * c_phi;
-        let t15 = t14 * acceleration[2];
-        let t17 = 0.11 * s_phi;
-        let t18 = t17 * twist[2];
-        let t19 = twist[2] * t18;
-        let t20 = acceleration[0] - t15 + t19;
-        let t22 = t17 * acceleration[2];
-        let t24 = t14 * twist[2];
-        let t25 = twist[2] * t24;
-        let t26 = acceleration[1] - t22 - t25;
+        let t14 = 0.11 * s_phi;
+        let t15 = t14 * twist[2];
+        let t17 = 0.11 * c_phi;
+        let t19 = twist[2] * t15 - t17 * acceleration[2];
+        let t20 = acceleration[0] + t19;
+        let t22 = t17 * twist[2];
+        let t25 = twist[2] * t22 + t14 * acceleration[2];
+        let t26 = acceleration[1] - t25;
         let minus_g2_vx_leg1 = c1_leg1 * t10;
-        let t30 = twist[0] - t24;
+        let t30 = twist[0] - t22;
         let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let t33 = twist[1] - t18;
+        let t33 = twist[1] - t15;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
         let t36 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t38 = c12_leg1 * t20 + s12_leg1 * t26 + 0.28 * t36;
@@ -1765,17 +1757,17 @@ impl DualV {
         let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
         let t48 = g1_vx_leg1 * rate_dot_1_leg1;
         let t49 = g1_vy_leg1 * rate_dot_1_leg1;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t17 + g1_vx_leg1 * t14;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * t14 + g1_vx_leg1 * t17;
         let t53 = minus_g1_wz_leg1 * rate_dot_1_leg1;
         let t64 = c1_leg1 * t20 + s1_leg1 * t26 + 0.28 * t43;
         let minus_rate_dot_2_leg1 = t10 * (t64 + t36 * t44);
         let t68 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
         let t69 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t17 + minus_g2_vx_leg1 * t14;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t14 + minus_g2_vx_leg1 * t17;
         let t73 = g2_wz_leg1 * minus_rate_dot_2_leg1;
         let t74 = 3.5714285714285716 * t20;
         let t78 = 3.5714285714285716 * t26;
-        let t84 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t84 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t85 = 9.090909090909092 * t84;
         let t87 = 0.04321428571428571 * (acceleration[2] - t85);
         let t103 = rate_1_leg1 + minus_rate_2_leg1;
@@ -1800,13 +1792,13 @@ impl DualV {
         let rate_dot_1_leg2 = t131 * (t143 + t148 * t149);
         let t153 = g1_vx_leg2 * rate_dot_1_leg2;
         let t154 = g1_vy_leg2 * rate_dot_1_leg2;
-        let minus_g1_wz_leg2 = t17 * g1_vy_leg2 + t14 * g1_vx_leg2;
+        let minus_g1_wz_leg2 = t14 * g1_vy_leg2 + t17 * g1_vx_leg2;
         let t158 = minus_g1_wz_leg2 * rate_dot_1_leg2;
         let t169 = c1_leg2 * t20 + s1_leg2 * t26 + 0.28 * t148;
         let minus_rate_dot_2_leg2 = t131 * (t169 + t141 * t149);
         let t173 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
         let t174 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = t17 * minus_g2_vy_leg2 + t14 * minus_g2_vx_leg2;
+        let g2_wz_leg2 = t14 * minus_g2_vy_leg2 + t17 * minus_g2_vx_leg2;
         let t178 = g2_wz_leg2 * minus_rate_dot_2_leg2;
         let t200 = rate_1_leg2 + minus_rate_2_leg2;
         let t201 = g1_vx_leg2 + minus_g2_vx_leg2;
@@ -1818,71 +1810,71 @@ impl DualV {
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
         let t228 = 3.5714285714285716 / s2_leg3;
         let g1_vx_leg3 = c12_leg3 * t228;
-        let t231 = acceleration[0] + t15 - t19;
-        let t234 = acceleration[1] + t22 + t25;
+        let t230 = acceleration[0] - t19;
+        let t232 = acceleration[1] + t25;
         let minus_g2_vx_leg3 = c1_leg3 * t228;
-        let t238 = twist[0] + t24;
+        let t236 = twist[0] + t22;
         let minus_g2_vy_leg3 = s1_leg3 * t228;
-        let t241 = twist[1] + t18;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t238 + minus_g2_vy_leg3 * t241;
-        let t244 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t246 = c12_leg3 * t231 + s12_leg3 * t234 + 0.28 * t244;
+        let t239 = twist[1] + t15;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t244 = c12_leg3 * t230 + s12_leg3 * t232 + 0.28 * t242;
         let g1_vy_leg3 = s12_leg3 * t228;
-        let rate_1_leg3 = g1_vx_leg3 * t238 + g1_vy_leg3 * t241;
-        let t251 = rate_1_leg3 * rate_1_leg3;
-        let t252 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t228 * (t246 + t251 * t252);
-        let t256 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t257 = g1_vy_leg3 * rate_dot_1_leg3;
-        let g1_wz_leg3 = t17 * g1_vy_leg3 + t14 * g1_vx_leg3;
-        let t261 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t272 = c1_leg3 * t231 + s1_leg3 * t234 + 0.28 * t251;
-        let minus_rate_dot_2_leg3 = t228 * (t272 + t244 * t252);
-        let t276 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t277 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = t17 * minus_g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t281 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t282 = 3.5714285714285716 * t231;
-        let t286 = 3.5714285714285716 * t234;
-        let t291 = 0.04321428571428571 * (acceleration[2] + t85);
-        let t307 = rate_1_leg3 + minus_rate_2_leg3;
-        let t308 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t310 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t312 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t317 = minus_rate_2_leg3 + twist[2];
-        let t320 = minus_g2_wz_leg3 + 1.0;
+        let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t239;
+        let t249 = rate_1_leg3 * rate_1_leg3;
+        let t250 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t228 * (t244 + t249 * t250);
+        let t254 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t255 = g1_vy_leg3 * rate_dot_1_leg3;
+        let g1_wz_leg3 = t14 * g1_vy_leg3 + t17 * g1_vx_leg3;
+        let t259 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t270 = c1_leg3 * t230 + s1_leg3 * t232 + 0.28 * t249;
+        let minus_rate_dot_2_leg3 = t228 * (t270 + t242 * t250);
+        let t274 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t275 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = t14 * minus_g2_vy_leg3 + t17 * minus_g2_vx_leg3;
+        let t279 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t280 = 3.5714285714285716 * t230;
+        let t284 = 3.5714285714285716 * t232;
+        let t289 = 0.04321428571428571 * (acceleration[2] + t85);
+        let t305 = rate_1_leg3 + minus_rate_2_leg3;
+        let t306 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t308 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t310 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t315 = minus_rate_2_leg3 + twist[2];
+        let t318 = minus_g2_wz_leg3 + 1.0;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t335 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t335;
-        let minus_g2_vx_leg4 = c1_leg4 * t335;
-        let minus_g2_vy_leg4 = s1_leg4 * t335;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t238 + minus_g2_vy_leg4 * t241;
-        let t345 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t347 = c12_leg4 * t231 + s12_leg4 * t234 + 0.28 * t345;
-        let g1_vy_leg4 = s12_leg4 * t335;
-        let rate_1_leg4 = g1_vx_leg4 * t238 + g1_vy_leg4 * t241;
-        let t352 = rate_1_leg4 * rate_1_leg4;
-        let t353 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t335 * (t347 + t352 * t353);
-        let t357 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t358 = g1_vy_leg4 * rate_dot_1_leg4;
-        let g1_wz_leg4 = t17 * g1_vy_leg4 + t14 * g1_vx_leg4;
-        let t362 = g1_wz_leg4 * rate_dot_1_leg4;
-        let t373 = c1_leg4 * t231 + s1_leg4 * t234 + 0.28 * t352;
-        let minus_rate_dot_2_leg4 = t335 * (t373 + t345 * t353);
-        let t377 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let t378 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
-        let minus_g2_wz_leg4 = t17 * minus_g2_vy_leg4 + t14 * minus_g2_vx_leg4;
-        let t382 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
-        let t404 = rate_1_leg4 + minus_rate_2_leg4;
-        let t405 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t407 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t409 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t414 = minus_rate_2_leg4 + twist[2];
-        let t417 = minus_g2_wz_leg4 + 1.0;
-        let t423 = 9.090909090909092 * (t25 + t22);
-        let t425 = 9.090909090909092 * (t15 - t19);
+        let t333 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t333;
+        let minus_g2_vx_leg4 = c1_leg4 * t333;
+        let minus_g2_vy_leg4 = s1_leg4 * t333;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t236 + minus_g2_vy_leg4 * t239;
+        let t343 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t345 = c12_leg4 * t230 + s12_leg4 * t232 + 0.28 * t343;
+        let g1_vy_leg4 = s12_leg4 * t333;
+        let rate_1_leg4 = g1_vx_leg4 * t236 + g1_vy_leg4 * t239;
+        let t350 = rate_1_leg4 * rate_1_leg4;
+        let t351 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t333 * (t345 + t350 * t351);
+        let t355 = g1_vx_leg4 * rate_dot_1_leg4;
+        let t356 = g1_vy_leg4 * rate_dot_1_leg4;
+        let g1_wz_leg4 = t14 * g1_vy_leg4 + t17 * g1_vx_leg4;
+        let t360 = g1_wz_leg4 * rate_dot_1_leg4;
+        let t371 = c1_leg4 * t230 + s1_leg4 * t232 + 0.28 * t350;
+        let minus_rate_dot_2_leg4 = t333 * (t371 + t343 * t351);
+        let t375 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let t376 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+        let minus_g2_wz_leg4 = t14 * minus_g2_vy_leg4 + t17 * minus_g2_vx_leg4;
+        let t380 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+        let t402 = rate_1_leg4 + minus_rate_2_leg4;
+        let t403 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t405 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t407 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t412 = minus_rate_2_leg4 + twist[2];
+        let t415 = minus_g2_wz_leg4 + 1.0;
+        let t420 = 9.090909090909092 * t25;
+        let t421 = 9.090909090909092 * t19;
         Ok([
             [
                 t48, t48, g1_vx_leg1 * rate_1_leg1,
@@ -1894,18 +1886,18 @@ impl DualV {
                 g1_vx_leg2, t173, t74 - 0.28 * (t153 + t173),
                 g1_vx_leg2 * t169 + minus_g2_vx_leg2 * t143, 0.0784 * t153, t200 * t201,
                 ::overact::math::signed(t201, t200), -t201, minus_g2_vx_leg2 * t210,
-                ::overact::math::signed(minus_g2_vx_leg2, t210), minus_g2_vx_leg2, t256, t256,
+                ::overact::math::signed(minus_g2_vx_leg2, t210), minus_g2_vx_leg2, t254, t254,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t276, t282 - 0.28 * (t256 + t276),
-                g1_vx_leg3 * t272 + minus_g2_vx_leg3 * t246, 0.0784 * t256, t307 * t308,
-                ::overact::math::signed(t308, t307), -t308, minus_g2_vx_leg3 * t317,
-                ::overact::math::signed(minus_g2_vx_leg3, t317), minus_g2_vx_leg3, t357, t357,
+                g1_vx_leg3, t274, t280 - 0.28 * (t254 + t274),
+                g1_vx_leg3 * t270 + minus_g2_vx_leg3 * t244, 0.0784 * t254, t305 * t306,
+                ::overact::math::signed(t306, t305), -t306, minus_g2_vx_leg3 * t315,
+                ::overact::math::signed(minus_g2_vx_leg3, t315), minus_g2_vx_leg3, t355, t355,
                 g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, t377, t282 - 0.28 * (t357 + t377),
-                g1_vx_leg4 * t373 + minus_g2_vx_leg4 * t347, 0.0784 * t357, t404 * t405,
-                ::overact::math::signed(t405, t404), -t405, minus_g2_vx_leg4 * t414,
-                ::overact::math::signed(minus_g2_vx_leg4, t414), minus_g2_vx_leg4, 0.0, -t423,
-                -t425, acceleration[0],
+                g1_vx_leg4, t375, t280 - 0.28 * (t355 + t375),
+                g1_vx_leg4 * t371 + minus_g2_vx_leg4 * t345, 0.0784 * t355, t402 * t403,
+                ::overact::math::signed(t403, t402), -t403, minus_g2_vx_leg4 * t412,
+                ::overact::math::signed(minus_g2_vx_leg4, t412), minus_g2_vx_leg4, 0.0, -t420, t421,
+                acceleration[0],
             ],
             [
                 t49, t49, g1_vy_leg1 * rate_1_leg1,
@@ -1917,18 +1909,18 @@ impl DualV {
                 g1_vy_leg2, t174, t78 - 0.28 * (t154 + t174),
                 g1_vy_leg2 * t169 + minus_g2_vy_leg2 * t143, 0.0784 * t154, t200 * t203,
                 ::overact::math::signed(t203, t200), -t203, minus_g2_vy_leg2 * t210,
-                ::overact::math::signed(minus_g2_vy_leg2, t210), minus_g2_vy_leg2, t257, t257,
+                ::overact::math::signed(minus_g2_vy_leg2, t210), minus_g2_vy_leg2, t255, t255,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t277, t286 - 0.28 * (t257 + t277),
-                g1_vy_leg3 * t272 + minus_g2_vy_leg3 * t246, 0.0784 * t257, t307 * t310,
-                ::overact::math::signed(t310, t307), -t310, minus_g2_vy_leg3 * t317,
-                ::overact::math::signed(minus_g2_vy_leg3, t317), minus_g2_vy_leg3, t358, t358,
+                g1_vy_leg3, t275, t284 - 0.28 * (t255 + t275),
+                g1_vy_leg3 * t270 + minus_g2_vy_leg3 * t244, 0.0784 * t255, t305 * t308,
+                ::overact::math::signed(t308, t305), -t308, minus_g2_vy_leg3 * t315,
+                ::overact::math::signed(minus_g2_vy_leg3, t315), minus_g2_vy_leg3, t356, t356,
                 g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, t378, t286 - 0.28 * (t358 + t378),
-                g1_vy_leg4 * t373 + minus_g2_vy_leg4 * t347, 0.0784 * t358, t404 * t407,
-                ::overact::math::signed(t407, t404), -t407, minus_g2_vy_leg4 * t414,
-                ::overact::math::signed(minus_g2_vy_leg4, t414), minus_g2_vy_leg4, 0.0, t425, -t423,
-                acceleration[1],
+                g1_vy_leg4, t376, t284 - 0.28 * (t356 + t376),
+                g1_vy_leg4 * t371 + minus_g2_vy_leg4 * t345, 0.0784 * t356, t402 * t405,
+                ::overact::math::signed(t405, t402), -t405, minus_g2_vy_leg4 * t412,
+                ::overact::math::signed(minus_g2_vy_leg4, t412), minus_g2_vy_leg4, 0.0, -t421,
+                -t420, acceleration[1],
             ],
             [
                 -t53, -t53, -(minus_g1_wz_leg1 * rate_1_leg1),
@@ -1940,16 +1932,16 @@ impl DualV {
                 -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, -t178,
                 t87 + 0.28 * (t158 + t178), -(minus_g1_wz_leg2 * t169 + g2_wz_leg2 * t143),
                 -(0.0784 * t158), -(t200 * t205), -::overact::math::signed(t205, t200), t205,
-                t210 * t213, ::overact::math::signed(t213, t210), t213, t261, t261,
+                t210 * t213, ::overact::math::signed(t213, t210), t213, t259, t259,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t281, t291 - 0.28 * (t261 + t281),
-                g1_wz_leg3 * t272 + minus_g2_wz_leg3 * t246, 0.0784 * t261, t307 * t312,
-                ::overact::math::signed(t312, t307), -t312, t317 * t320,
-                ::overact::math::signed(t320, t317), t320, t362, t362, g1_wz_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t382,
-                t291 - 0.28 * (t362 + t382), g1_wz_leg4 * t373 + minus_g2_wz_leg4 * t347,
-                0.0784 * t362, t404 * t409, ::overact::math::signed(t409, t404), -t409, t414 * t417,
-                ::overact::math::signed(t417, t414), t417, acceleration[2],
+                g1_wz_leg3, t279, t289 - 0.28 * (t259 + t279),
+                g1_wz_leg3 * t270 + minus_g2_wz_leg3 * t244, 0.0784 * t259, t305 * t310,
+                ::overact::math::signed(t310, t305), -t310, t315 * t318,
+                ::overact::math::signed(t318, t315), t318, t360, t360, g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t380,
+                t289 - 0.28 * (t360 + t380), g1_wz_leg4 * t371 + minus_g2_wz_leg4 * t345,
+                0.0784 * t360, t402 * t407, ::overact::math::signed(t407, t402), -t407, t412 * t415,
+                ::overact::math::signed(t415, t412), t415, acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0], -t84, 0.0,
             ],
         ])
@@ -1965,7 +1957,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 612 operations (218 additions, 383 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 479 intermediates.
+    /// 594 operations (224 additions, 359 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 461 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1981,7 +1973,8 @@ impl DualV {
         let t3 = pose[0] - t2;
         let t4 = t3 - 0.3950502153918333;
         let t6 = 0.11 * c_phi;
-        let t8 = pose[1] + t6 - 0.10970563941232059;
+        let t7 = t6 + -0.10970563941232059;
+        let t8 = pose[1] + t7;
         let t10 = t8 * t8;
         let t11 = t4 * t4 + t10;
         let t13 = 0.0784 / t11 - 0.25;
@@ -2006,324 +1999,322 @@ impl DualV {
         let minus_g1_vx_leg2 = t31 * t33;
         let t37 = pose[0] + t2;
         let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t49 = 0.5 * t38 + t41 * t47;
-        let t50 = t38 - t49;
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = t50 * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t56 - t41 * t62;
-        let t65 = t56 - t64;
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = t65 * t67;
-        let t70 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t40 = pose[1] - t7;
+        let t42 = t40 * t40;
+        let t43 = t38 * t38 + t42;
+        let t45 = 0.0784 / t43 - 0.25;
+        ::overact::guard::reach(t45, "leg3")?;
+        let t46 = ::overact::math::sqrt(t45);
+        let t48 = 0.5 * t38 + t40 * t46;
+        let t49 = t38 - t48;
+        let t50 = t43 * t46;
+        ::overact::guard::leg(t50, 0.07839913810297301, "leg3")?;
+        let t51 = 1.0 / t50;
+        let g1_vx_leg3 = t49 * t51;
+        let t55 = t37 - 0.3950502153918333;
+        let t58 = t55 * t55 + t42;
+        let t60 = 0.0784 / t58 - 0.25;
+        ::overact::guard::reach(t60, "leg4")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = 0.5 * t55 - t40 * t61;
+        let t64 = t55 - t63;
+        let t65 = t58 * t61;
+        ::overact::guard::leg(t65, 0.07839913810297301, "leg4")?;
+        let t66 = 1.0 / t65;
+        let minus_g1_vx_leg4 = t64 * t66;
+        let t69 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t70, 25.429161076750646, "actuators")?;
-        let t71 = 1.0 / t70;
-        let t72 = 0.5 * t8;
-        let t74 = t72 - t4 * t14;
-        let t75 = t8 - t74;
-        let g1_vy_leg1 = t75 * t19;
+        ::overact::guard::platform(t69, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t69, 25.429161076750646, "actuators")?;
+        let t70 = 1.0 / t69;
+        let t71 = 0.5 * t8;
+        let t73 = t71 - t4 * t14;
+        let t74 = t8 - t73;
+        let g1_vy_leg1 = t74 * t19;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t82 = t72 + t22 * t28;
-        let t83 = t8 - t82;
-        let minus_g1_vy_leg2 = t83 * t33;
+        let t81 = t71 + t22 * t28;
+        let t82 = t8 - t81;
+        let minus_g1_vy_leg2 = t82 * t33;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t90 = 0.5 * t41;
-        let t92 = t90 - t38 * t47;
-        let t93 = t41 - t92;
-        let g1_vy_leg3 = t93 * t52;
+        let t89 = 0.5 * t40;
+        let t91 = t89 - t38 * t46;
+        let t92 = t40 - t91;
+        let g1_vy_leg3 = t92 * t51;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t101 = t90 + t56 * t62;
-        let t102 = t41 - t101;
-        let minus_g1_vy_leg4 = t102 * t67;
+        let t100 = t89 + t55 * t61;
+        let t101 = t40 - t100;
+        let minus_g1_vy_leg4 = t101 * t66;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t115 = g1_vx_leg3 * g1_wz_leg3
+        let t114 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t116 = t115 * t71;
-        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        let t115 = t114 * t70;
+        let t131 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t134 = g1_vy_leg3 * g1_wz_leg3
+        let t133 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
-        let t142 = t132 * t71;
-        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t131 * t115;
+        let t141 = t131 * t70;
+        let t143 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t132 * t142;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = t134 * t145;
-        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
-            - t134 * t146;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - t131 * t141;
+        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
+        let t144 = 1.0 / t143;
+        let t145 = t133 * t144;
+        let t147 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t114 * t115
+            - t133 * t145;
+        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
+        let t148 = 1.0 / t147;
+        let t162 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t174 = g1_vy_leg1 * actuator_velocities[0]
+        let t173 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
-        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t162 * t141;
+        let t175 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
-        let rate_3_leg1 = t149 * t176;
-        let t178 = t6 * rate_3_leg1;
-        let t179 = rate_3_leg1 * t178;
-        let t181 = t2 * rate_3_leg1;
-        let t182 = rate_3_leg1 * t181;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t162 * t115 - t145 * t173;
+        let rate_3_leg1 = t148 * t175;
+        let t177 = t6 * rate_3_leg1;
+        let t178 = rate_3_leg1 * t177;
+        let t180 = t2 * rate_3_leg1;
+        let t181 = rate_3_leg1 * t180;
         let minus_g2_vx_leg1 = t16 * t19;
-        let t189 = t145 * t174 - t146 * rate_3_leg1;
-        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
-        let t194 = t193 - t178;
-        let minus_g2_vy_leg1 = t74 * t19;
-        let t197 = t189 - t181;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
-        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t201 = 0.0784 * t200;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
-        let t206 = rate_1_leg1 * rate_1_leg1;
-        let t207 = t11 - 0.1568;
-        let t208 = 0.5 * t207;
-        let t209 = t206 * t208;
-        let minus_rate_dot_1_leg1 = t19 * (t75 * t179 - t17 * t182 - t201 - t209);
-        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t188 = t144 * t173 - t145 * rate_3_leg1;
+        let t192 = t162 * t70 - t141 * t188 - t115 * rate_3_leg1;
+        let t193 = t192 - t177;
+        let minus_g2_vy_leg1 = t73 * t19;
+        let t196 = t188 - t180;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t193 + minus_g2_vy_leg1 * t196;
+        let t199 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t200 = 0.0784 * t199;
+        let rate_1_leg1 = g1_vx_leg1 * t193 + g1_vy_leg1 * t196;
+        let t205 = rate_1_leg1 * rate_1_leg1;
+        let t206 = t11 - 0.1568;
+        let t207 = 0.5 * t206;
+        let t208 = t205 * t207;
+        let minus_rate_dot_1_leg1 = t19 * (t74 * t178 - t17 * t181 - t200 - t208);
+        let t211 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
         let g2_vx_leg2 = t30 * t33;
-        let g2_vy_leg2 = t82 * t33;
-        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
-        let t222 = rate_2_leg2 * rate_2_leg2;
-        let t223 = 0.0784 * t222;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
-        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t229 = t25 - 0.1568;
-        let t230 = 0.5 * t229;
-        let t231 = t228 * t230;
-        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
-        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = t49 * t52;
-        let t241 = t193 + t178;
-        let minus_g2_vy_leg3 = t92 * t52;
-        let t244 = t189 + t181;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
-        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t248 = 0.0784 * t247;
-        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
-        let t253 = rate_1_leg3 * rate_1_leg3;
-        let t254 = t44 - 0.1568;
-        let t255 = 0.5 * t254;
-        let t256 = t253 * t255;
-        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
-        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t64 * t67;
-        let g2_vy_leg4 = t101 * t67;
-        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
-        let t270 = rate_2_leg4 * rate_2_leg4;
-        let t271 = 0.0784 * t270;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
-        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t277 = t59 - 0.1568;
-        let t278 = 0.5 * t277;
-        let t279 = t276 * t278;
-        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
-        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
-            - minus_g1_vx_leg4 * t282;
-        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
-            - minus_g1_vy_leg4 * t282 - t142 * t284;
-        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
-            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
-        let rate_dot_3_leg1 = t149 * t306;
-        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
-        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
-        let t314 = t6 * rate_dot_3_leg1;
-        let t316 = t313 - t314 + t182;
-        let t318 = t2 * rate_dot_3_leg1;
-        let t320 = t309 - t318 - t179;
-        let t323 = t17 * t316 + t75 * t320 + t201;
-        let rate_dot_1_leg1 = t19 * (t323 + t209);
-        let t326 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t327 = g1_vy_leg1 * rate_dot_1_leg1;
-        let t328 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t339 = t16 * t316 + t74 * t320 + 0.0784 * t206;
-        let minus_rate_dot_2_leg1 = t19 * (t339 + t200 * t208);
+        let g2_vy_leg2 = t81 * t33;
+        let rate_2_leg2 = g2_vx_leg2 * t193 + g2_vy_leg2 * t196;
+        let t221 = rate_2_leg2 * rate_2_leg2;
+        let t222 = 0.0784 * t221;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t196;
+        let t227 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t229 = 0.5 * (t25 - 0.1568);
+        let t230 = t227 * t229;
+        let rate_dot_1_leg2 = t33 * (t82 * t178 - t31 * t181 - t222 - t230);
+        let t233 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = t48 * t51;
+        let t240 = t192 + t177;
+        let minus_g2_vy_leg3 = t91 * t51;
+        let t243 = t188 + t180;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t240 + minus_g2_vy_leg3 * t243;
+        let t246 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t247 = 0.0784 * t246;
+        let rate_1_leg3 = g1_vx_leg3 * t240 + g1_vy_leg3 * t243;
+        let t252 = rate_1_leg3 * rate_1_leg3;
+        let t254 = 0.5 * (t43 - 0.1568);
+        let t255 = t252 * t254;
+        let minus_rate_dot_1_leg3 = t51 * (t49 * t181 - t92 * t178 - t247 - t255);
+        let t258 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t63 * t66;
+        let g2_vy_leg4 = t100 * t66;
+        let rate_2_leg4 = g2_vx_leg4 * t240 + g2_vy_leg4 * t243;
+        let t269 = rate_2_leg4 * rate_2_leg4;
+        let t270 = 0.0784 * t269;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t240 + minus_g1_vy_leg4 * t243;
+        let t275 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t277 = 0.5 * (t58 - 0.1568);
+        let t278 = t275 * t277;
+        let rate_dot_1_leg4 = t66 * (t64 * t181 - t101 * t178 - t270 - t278);
+        let t281 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t283 = g1_vx_leg1 * t211 - minus_g1_vx_leg2 * t233 + g1_vx_leg3 * t258
+            - minus_g1_vx_leg4 * t281;
+        let t293 = g1_vy_leg1 * t211 - minus_g1_vy_leg2 * t233 + g1_vy_leg3 * t258
+            - minus_g1_vy_leg4 * t281 - t141 * t283;
+        let t305 = g1_wz_leg2 * t233 - minus_g1_wz_leg1 * t211 + g1_wz_leg3 * t258
+            - minus_g1_wz_leg4 * t281 - t115 * t283 - t145 * t293;
+        let rate_dot_3_leg1 = t148 * t305;
+        let t308 = t144 * t293 - t145 * rate_dot_3_leg1;
+        let t312 = t70 * t283 - t141 * t308 - t115 * rate_dot_3_leg1;
+        let t314 = t181 - t6 * rate_dot_3_leg1;
+        let t315 = t312 + t314;
+        let t318 = t178 + t2 * rate_dot_3_leg1;
+        let t319 = t308 - t318;
+        let t321 = t17 * t315 + t74 * t319;
+        let t322 = t321 + t200;
+        let rate_dot_1_leg1 = t19 * (t322 + t208);
+        let t325 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t326 = g1_vy_leg1 * rate_dot_1_leg1;
+        let t327 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let t338 = t16 * t315 + t73 * t319 + 0.0784 * t205;
+        let minus_rate_dot_2_leg1 = t19 * (t338 + t199 * t207);
+        let t342 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t343 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t353 = t200 * (3.5714285714285716 * t18)
-            + 1.7857142857142858 * t207 * minus_rate_dot_2_leg1;
-        let t359 = 3.5714285714285716 * (t18 * t206)
-            + 1.7857142857142858 * (t207 * rate_dot_1_leg1);
-        let t368 = 3.5714285714285716 * t339;
-        let t370 = 3.5714285714285716 * t323;
-        let t382 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t383 = rate_1_leg1 + minus_rate_2_leg1;
-        let t385 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t387 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t392 = minus_rate_2_leg1 + rate_3_leg1;
-        let t395 = 1.0 - g2_wz_leg1;
-        let t403 = t31 * t316 + t83 * t320 + t223;
-        let minus_rate_dot_1_leg2 = t33 * (t403 + t231);
-        let t406 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t407 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t408 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t419 = t30 * t316 + t82 * t320 + 0.0784 * t228;
-        let rate_dot_2_leg2 = t33 * (t419 + t222 * t230);
+        let t347 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t348 = 3.5714285714285716 * t315;
+        let t352 = 3.5714285714285716 * t319;
+        let s12_leg1 = 3.5714285714285716 * t74;
+        let c12_leg1 = 3.5714285714285716 * t17;
+        let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
+        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
+        let t374 = s3_leg1
+            * (3.5714285714285716 * (t18 * t205)
+                + 1.7857142857142858 * (t206 * rate_dot_1_leg1)
+                - 0.28 * minus_rate_dot_2_leg1)
+            - minus_c3_leg1 * (3.5714285714285716 * t321);
+        let t375 = 0.39285714285714285 * t374;
+        let t379 = 3.5714285714285716 * t338;
+        let t381 = 3.5714285714285716 * t322;
+        let t393 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t394 = rate_1_leg1 + minus_rate_2_leg1;
+        let t396 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t398 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t403 = minus_rate_2_leg1 + rate_3_leg1;
+        let t406 = 1.0 - g2_wz_leg1;
+        let t414 = t31 * t315 + t82 * t319 + t222;
+        let minus_rate_dot_1_leg2 = t33 * (t414 + t230);
+        let t417 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t418 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t419 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t430 = t30 * t315 + t81 * t319 + 0.0784 * t227;
+        let rate_dot_2_leg2 = t33 * (t430 + t221 * t229);
+        let t434 = g2_vx_leg2 * rate_dot_2_leg2;
+        let t435 = g2_vy_leg2 * rate_dot_2_leg2;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t433 = t222 * (3.5714285714285716 * t32)
-            + 1.7857142857142858 * t229 * rate_dot_2_leg2;
-        let t439 = 3.5714285714285716 * (t32 * t228)
-            + 1.7857142857142858 * (t229 * minus_rate_dot_1_leg2);
-        let t448 = 3.5714285714285716 * t419;
-        let t450 = 3.5714285714285716 * t403;
-        let t462 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t463 = minus_rate_1_leg2 + rate_2_leg2;
-        let t465 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t467 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t472 = rate_3_leg1 - rate_2_leg2;
-        let t475 = minus_g2_wz_leg2 + 1.0;
-        let t481 = t313 + t314 - t182;
-        let t484 = t309 + t318 + t179;
-        let t487 = t50 * t481 + t93 * t484 + t248;
-        let rate_dot_1_leg3 = t52 * (t487 + t256);
-        let t490 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t491 = g1_vy_leg3 * rate_dot_1_leg3;
-        let t492 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t503 = t49 * t481 + t92 * t484 + 0.0784 * t253;
-        let minus_rate_dot_2_leg3 = t52 * (t503 + t247 * t255);
+        let t439 = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let t449 = 3.5714285714285716 * t430;
+        let t451 = 3.5714285714285716 * t414;
+        let t463 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t464 = minus_rate_1_leg2 + rate_2_leg2;
+        let t466 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t468 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t473 = rate_3_leg1 - rate_2_leg2;
+        let t476 = minus_g2_wz_leg2 + 1.0;
+        let t481 = t312 - t314;
+        let t483 = t308 + t318;
+        let t486 = t49 * t481 + t92 * t483 + t247;
+        let rate_dot_1_leg3 = t51 * (t486 + t255);
+        let t489 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t490 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t491 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t502 = t48 * t481 + t91 * t483 + 0.0784 * t252;
+        let minus_rate_dot_2_leg3 = t51 * (t502 + t246 * t254);
+        let t506 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t507 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t517 = t247 * (3.5714285714285716 * t51)
-            + 1.7857142857142858 * t254 * minus_rate_dot_2_leg3;
-        let t523 = 3.5714285714285716 * (t51 * t253)
-            + 1.7857142857142858 * (t254 * rate_dot_1_leg3);
-        let t532 = 3.5714285714285716 * t503;
-        let t534 = 3.5714285714285716 * t487;
-        let t546 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t547 = rate_1_leg3 + minus_rate_2_leg3;
-        let t549 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t551 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t556 = minus_rate_2_leg3 + rate_3_leg1;
-        let t559 = minus_g2_wz_leg3 + 1.0;
-        let t567 = t65 * t481 + t102 * t484 + t271;
-        let minus_rate_dot_1_leg4 = t67 * (t567 + t279);
-        let t570 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t571 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let t572 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t583 = t64 * t481 + t101 * t484 + 0.0784 * t276;
-        let rate_dot_2_leg4 = t67 * (t583 + t270 * t278);
+        let t511 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t512 = 3.5714285714285716 * t481;
+        let t516 = 3.5714285714285716 * t483;
+        let t522 = s_phi * t308 + c_phi * t312;
+        let t525 = 0.39285714285714285 * (t522 + t374 + t522);
+        let t529 = 3.5714285714285716 * t502;
+        let t531 = 3.5714285714285716 * t486;
+        let t543 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t544 = rate_1_leg3 + minus_rate_2_leg3;
+        let t546 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t548 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t553 = minus_rate_2_leg3 + rate_3_leg1;
+        let t556 = minus_g2_wz_leg3 + 1.0;
+        let t564 = t64 * t481 + t101 * t483 + t270;
+        let minus_rate_dot_1_leg4 = t66 * (t564 + t278);
+        let t567 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t568 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let t569 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t580 = t63 * t481 + t100 * t483 + 0.0784 * t275;
+        let rate_dot_2_leg4 = t66 * (t580 + t269 * t277);
+        let t584 = g2_vx_leg4 * rate_dot_2_leg4;
+        let t585 = g2_vy_leg4 * rate_dot_2_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t597 = t270 * (3.5714285714285716 * t66)
-            + 1.7857142857142858 * t277 * rate_dot_2_leg4;
-        let t603 = 3.5714285714285716 * (t66 * t276)
-            + 1.7857142857142858 * (t277 * minus_rate_dot_1_leg4);
-        let t612 = 3.5714285714285716 * t583;
-        let t614 = 3.5714285714285716 * t567;
-        let t626 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t627 = minus_rate_1_leg4 + rate_2_leg4;
-        let t629 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t631 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t636 = rate_3_leg1 - rate_2_leg4;
-        let t639 = 1.0 - g2_wz_leg4;
-        let t645 = 9.090909090909092 * (t179 + t318);
-        let t647 = 9.090909090909092 * (t314 - t182);
+        let t589 = g2_wz_leg4 * rate_dot_2_leg4;
+        let t599 = 3.5714285714285716 * t580;
+        let t601 = 3.5714285714285716 * t564;
+        let t613 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t614 = minus_rate_1_leg4 + rate_2_leg4;
+        let t616 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t618 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t623 = rate_3_leg1 - rate_2_leg4;
+        let t626 = 1.0 - g2_wz_leg4;
+        let t631 = 9.090909090909092 * t318;
+        let t632 = 9.090909090909092 * t314;
         Ok([
             [
-                t326, t326, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1,
-                minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vx_leg1 * t353 + minus_g2_vx_leg1 * t359),
-                g1_vx_leg1 * t368 + minus_g2_vx_leg1 * t370, 0.0784 * t326, t382 * t383,
-                ::overact::math::signed(t382, t383), -t382, minus_g2_vx_leg1 * t392,
-                ::overact::math::signed(minus_g2_vx_leg1, t392), minus_g2_vx_leg1, t406, t406,
-                minus_g1_vx_leg2 * minus_rate_1_leg2,
+                t325, t325, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t342,
+                t348 - 0.28 * (t325 + t342), g1_vx_leg1 * t379 + minus_g2_vx_leg1 * t381,
+                0.0784 * t325, t393 * t394, ::overact::math::signed(t393, t394), -t393,
+                minus_g2_vx_leg1 * t403, ::overact::math::signed(minus_g2_vx_leg1, t403),
+                minus_g2_vx_leg1, t417, t417, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                g2_vx_leg2 * rate_dot_2_leg2, -(minus_g1_vx_leg2 * t433 + g2_vx_leg2 * t439),
-                -(minus_g1_vx_leg2 * t448 + g2_vx_leg2 * t450), 0.0784 * t406, t462 * t463,
-                ::overact::math::signed(t462, t463), t462, -(g2_vx_leg2 * t472),
-                -::overact::math::signed(g2_vx_leg2, t472), -g2_vx_leg2, t490, t490,
-                g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vx_leg3 * t517 + minus_g2_vx_leg3 * t523),
-                g1_vx_leg3 * t532 + minus_g2_vx_leg3 * t534, 0.0784 * t490, t546 * t547,
-                ::overact::math::signed(t546, t547), -t546, minus_g2_vx_leg3 * t556,
-                ::overact::math::signed(minus_g2_vx_leg3, t556), minus_g2_vx_leg3, t570, t570,
+                t434, t348 - 0.28 * (t417 + t434), -(minus_g1_vx_leg2 * t449 + g2_vx_leg2 * t451),
+                0.0784 * t417, t463 * t464, ::overact::math::signed(t463, t464), t463,
+                -(g2_vx_leg2 * t473), -::overact::math::signed(g2_vx_leg2, t473), -g2_vx_leg2, t489,
+                t489, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t506, t512 - 0.28 * (t489 + t506),
+                g1_vx_leg3 * t529 + minus_g2_vx_leg3 * t531, 0.0784 * t489, t543 * t544,
+                ::overact::math::signed(t543, t544), -t543, minus_g2_vx_leg3 * t553,
+                ::overact::math::signed(minus_g2_vx_leg3, t553), minus_g2_vx_leg3, t567, t567,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                g2_vx_leg4 * rate_dot_2_leg4, -(minus_g1_vx_leg4 * t597 + g2_vx_leg4 * t603),
-                -(minus_g1_vx_leg4 * t612 + g2_vx_leg4 * t614), 0.0784 * t570, t626 * t627,
-                ::overact::math::signed(t626, t627), t626, -(g2_vx_leg4 * t636),
-                -::overact::math::signed(g2_vx_leg4, t636), -g2_vx_leg4, 0.0, -t645, -t647, t313,
+                t584, t512 - 0.28 * (t567 + t584), -(minus_g1_vx_leg4 * t599 + g2_vx_leg4 * t601),
+                0.0784 * t567, t613 * t614, ::overact::math::signed(t613, t614), t613,
+                -(g2_vx_leg4 * t623), -::overact::math::signed(g2_vx_leg4, t623), -g2_vx_leg4, 0.0,
+                -t631, t632, t312,
             ],
             [
-                t327, t327, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t353 + minus_g2_vy_leg1 * t359),
-                g1_vy_leg1 * t368 + minus_g2_vy_leg1 * t370, 0.0784 * t327, t385 * t383,
-                ::overact::math::signed(t385, t383), -t385, minus_g2_vy_leg1 * t392,
-                ::overact::math::signed(minus_g2_vy_leg1, t392), minus_g2_vy_leg1, t407, t407,
-                minus_g1_vy_leg2 * minus_rate_1_leg2,
+                t326, t326, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t343,
+                t352 - 0.28 * (t326 + t343), g1_vy_leg1 * t379 + minus_g2_vy_leg1 * t381,
+                0.0784 * t326, t396 * t394, ::overact::math::signed(t396, t394), -t396,
+                minus_g2_vy_leg1 * t403, ::overact::math::signed(minus_g2_vy_leg1, t403),
+                minus_g2_vy_leg1, t418, t418, minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                g2_vy_leg2 * rate_dot_2_leg2, -(minus_g1_vy_leg2 * t433 + g2_vy_leg2 * t439),
-                -(minus_g1_vy_leg2 * t448 + g2_vy_leg2 * t450), 0.0784 * t407, t465 * t463,
-                ::overact::math::signed(t465, t463), t465, -(g2_vy_leg2 * t472),
-                -::overact::math::signed(g2_vy_leg2, t472), -g2_vy_leg2, t491, t491,
-                g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vy_leg3 * t517 + minus_g2_vy_leg3 * t523),
-                g1_vy_leg3 * t532 + minus_g2_vy_leg3 * t534, 0.0784 * t491, t549 * t547,
-                ::overact::math::signed(t549, t547), -t549, minus_g2_vy_leg3 * t556,
-                ::overact::math::signed(minus_g2_vy_leg3, t556), minus_g2_vy_leg3, t571, t571,
+                t435, t352 - 0.28 * (t418 + t435), -(minus_g1_vy_leg2 * t449 + g2_vy_leg2 * t451),
+                0.0784 * t418, t466 * t464, ::overact::math::signed(t466, t464), t466,
+                -(g2_vy_leg2 * t473), -::overact::math::signed(g2_vy_leg2, t473), -g2_vy_leg2, t490,
+                t490, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t507, t516 - 0.28 * (t490 + t507),
+                g1_vy_leg3 * t529 + minus_g2_vy_leg3 * t531, 0.0784 * t490, t546 * t544,
+                ::overact::math::signed(t546, t544), -t546, minus_g2_vy_leg3 * t553,
+                ::overact::math::signed(minus_g2_vy_leg3, t553), minus_g2_vy_leg3, t568, t568,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                g2_vy_leg4 * rate_dot_2_leg4, -(minus_g1_vy_leg4 * t597 + g2_vy_leg4 * t603),
-                -(minus_g1_vy_leg4 * t612 + g2_vy_leg4 * t614), 0.0784 * t571, t629 * t627,
-                ::overact::math::signed(t629, t627), t629, -(g2_vy_leg4 * t636),
-                -::overact::math::signed(g2_vy_leg4, t636), -g2_vy_leg4, 0.0, t647, -t645, t309,
+                t585, t516 - 0.28 * (t568 + t585), -(minus_g1_vy_leg4 * t599 + g2_vy_leg4 * t601),
+                0.0784 * t568, t616 * t614, ::overact::math::signed(t616, t614), t616,
+                -(g2_vy_leg4 * t623), -::overact::math::signed(g2_vy_leg4, t623), -g2_vy_leg4, 0.0,
+                -t632, -t631, t308,
             ],
             [
-                -t328, -t328, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), minus_g1_wz_leg1 * t353 + g2_wz_leg1 * t359,
-                -(minus_g1_wz_leg1 * t368 + g2_wz_leg1 * t370), -(0.0784 * t328), -(t387 * t383),
-                -::overact::math::signed(t387, t383), t387, t395 * t392,
-                ::overact::math::signed(t395, t392), t395, -t408, -t408,
+                -t327, -t327, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t347,
+                t375 + 0.28 * (t327 + t347), -(minus_g1_wz_leg1 * t379 + g2_wz_leg1 * t381),
+                -(0.0784 * t327), -(t398 * t394), -::overact::math::signed(t398, t394), t398,
+                t406 * t403, ::overact::math::signed(t406, t403), t406, -t419, -t419,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(minus_g2_wz_leg2 * rate_dot_2_leg2), g1_wz_leg2 * t433 + minus_g2_wz_leg2 * t439,
-                g1_wz_leg2 * t448 + minus_g2_wz_leg2 * t450, -(0.0784 * t408), -(t467 * t463),
-                -::overact::math::signed(t467, t463), -t467, t475 * t472,
-                ::overact::math::signed(t475, t472), t475, t492, t492, g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg3,
-                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                -(g1_wz_leg3 * t517 + minus_g2_wz_leg3 * t523),
-                g1_wz_leg3 * t532 + minus_g2_wz_leg3 * t534, 0.0784 * t492, t551 * t547,
-                ::overact::math::signed(t551, t547), -t551, t559 * t556,
-                ::overact::math::signed(t559, t556), t559, t572, t572,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t439,
+                t375 + 0.28 * (t419 + t439), g1_wz_leg2 * t449 + minus_g2_wz_leg2 * t451,
+                -(0.0784 * t419), -(t468 * t464), -::overact::math::signed(t468, t464), -t468,
+                t476 * t473, ::overact::math::signed(t476, t473), t476, t491, t491,
+                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3, t511, t525 - 0.28 * (t491 + t511),
+                g1_wz_leg3 * t529 + minus_g2_wz_leg3 * t531, 0.0784 * t491, t548 * t544,
+                ::overact::math::signed(t548, t544), -t548, t556 * t553,
+                ::overact::math::signed(t556, t553), t556, t569, t569,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg4 * t597 + g2_wz_leg4 * t603),
-                -(minus_g1_wz_leg4 * t612 + g2_wz_leg4 * t614), 0.0784 * t572, t631 * t627,
-                ::overact::math::signed(t631, t627), t631, t639 * t636,
-                ::overact::math::signed(t639, t636), t639, rate_dot_3_leg1,
-                c_phi * t309 - s_phi * t313, -(c_phi * t313 + s_phi * t309), 0.0,
+                t589, t525 - 0.28 * (t569 + t589), -(minus_g1_wz_leg4 * t599 + g2_wz_leg4 * t601),
+                0.0784 * t569, t618 * t614, ::overact::math::signed(t618, t614), t618, t626 * t623,
+                ::overact::math::signed(t626, t623), t626, rate_dot_3_leg1,
+                c_phi * t308 - s_phi * t312, -t522, 0.0,
             ],
         ])
     }
@@ -2337,7 +2328,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 521 operations (194 additions, 318 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 421 intermediates.
+    /// 501 operations (184 additions, 308 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 401 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2362,21 +2353,19 @@ impl DualV {
         let t15 = 1.0 / t14;
         let t18 = 0.5 * t4 + t8 * t13;
         let t19 = t4 - t18;
-        let t20 = t6 * acceleration[2];
-        let t22 = t2 * twist[2];
-        let t23 = twist[2] * t22;
-        let t24 = acceleration[0] - t20 + t23;
+        let t20 = t2 * twist[2];
+        let t23 = twist[2] * t20 - t6 * acceleration[2];
+        let t24 = acceleration[0] + t23;
         let t26 = 0.5 * t8;
         let t28 = t26 - t4 * t13;
         let t29 = t8 - t28;
-        let t30 = t2 * acceleration[2];
-        let t32 = t6 * twist[2];
-        let t33 = twist[2] * t32;
-        let t34 = acceleration[1] - t30 - t33;
+        let t30 = t6 * twist[2];
+        let t33 = twist[2] * t30 + t2 * acceleration[2];
+        let t34 = acceleration[1] - t33;
         let minus_g2_vx_leg1 = t18 * t15;
-        let t38 = twist[0] - t32;
+        let t38 = twist[0] - t30;
         let minus_g2_vy_leg1 = t28 * t15;
-        let t41 = twist[1] - t22;
+        let t41 = twist[1] - t20;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
         let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t46 = t19 * t24 + t29 * t34 + 0.0784 * t44;
@@ -2420,220 +2409,216 @@ impl DualV {
         let t100 = t83 - t99;
         let g1_vy_leg3 = t100 * t94;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t112 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t116 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t118 = g1_vx_leg3 * t112 - g1_vy_leg3 * t116;
-        ::overact::guard::platform(t118, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t118, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t118, 3.5376915986291904, "kept actuators")?;
-        let t119 = 0.5 / t118;
-        let t120 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t119;
-        let t125 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t119;
+        let t109 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t110 = g1_wz_leg3 * t109;
+        ::overact::guard::platform(t110, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t110, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t110, 3.5376915986291904, "kept actuators")?;
+        let t111 = 0.5 / t110;
+        let t112 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t111;
+        let t117 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t111;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t134 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t119;
-        let t136 = minus_g2_vy_leg1 * t120 - minus_g2_vx_leg1 * t125 + g2_wz_leg1 * t134;
-        let t141 = t18 * t24 + t28 * t34 + 0.0784 * t52;
-        let minus_rate_dot_2_leg1 = t15 * (t141 + t44 * t54);
-        let t145 = t136 * minus_rate_dot_2_leg1;
-        let t149 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t119;
-        let t154 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t119;
-        let t160 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t119;
-        let t162 = minus_g2_vy_leg1 * t149 - minus_g2_vx_leg1 * t154 - g2_wz_leg1 * t160;
-        let t163 = t162 * minus_rate_dot_2_leg1;
-        let t164 = t134 * acceleration[2];
-        let t166 = 9.090909090909092 * (t33 + t30);
-        let t169 = 9.090909090909092 * (t20 - t23);
-        let t174 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t176 = t120 * t166 - t125 * t169 - t134 * t174;
-        let t177 = 9.090909090909092 * t176;
-        let t181 = t125 * acceleration[0] - t120 * acceleration[1];
-        let t182 = 82.64462809917356 * t181;
-        let t184 = 0.04321428571428571 * (t164 + t177 + t182);
-        let t192 = t149 * t166 - t154 * t169 + t160 * t174;
-        let t193 = 9.090909090909092 * t192;
-        let t194 = t160 * acceleration[2];
-        let t198 = t154 * acceleration[0] - t149 * acceleration[1];
-        let t199 = 82.64462809917356 * t198;
-        let t201 = 0.04321428571428571 * (t193 - t194 + t199);
-        let t205 = 3.5714285714285716 * t46;
-        let t210 = rate_1_leg1 + minus_rate_2_leg1;
-        let t211 = t136 - 1.0;
-        let t216 = minus_rate_2_leg1 + twist[2];
-        let t217 = t134 - t136;
-        let t219 = t162 + t160;
-        let t224 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2)
-            * t119;
+        let t126 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t111;
+        let t128 = minus_g2_vy_leg1 * t112 - minus_g2_vx_leg1 * t117 + g2_wz_leg1 * t126;
+        let t133 = t18 * t24 + t28 * t34 + 0.0784 * t52;
+        let minus_rate_dot_2_leg1 = t15 * (t133 + t44 * t54);
+        let t137 = t128 * minus_rate_dot_2_leg1;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let t144 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t111;
+        let t149 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t111;
+        let t155 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t111;
+        let t157 = minus_g2_vy_leg1 * t144 - minus_g2_vx_leg1 * t149 - g2_wz_leg1 * t155;
+        let t158 = t157 * minus_rate_dot_2_leg1;
+        let t159 = t126 * acceleration[2];
+        let t160 = 9.090909090909092 * t23;
+        let t162 = 9.090909090909092 * t33;
+        let t167 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t169 = t117 * t160 + t112 * t162 - t126 * t167;
+        let t170 = 9.090909090909092 * t169;
+        let t174 = t117 * acceleration[0] - t112 * acceleration[1];
+        let t175 = 82.64462809917356 * t174;
+        let t177 = 0.04321428571428571 * (t159 + t170 + t175);
+        let t185 = t149 * t160 + t144 * t162 + t155 * t167;
+        let t186 = 9.090909090909092 * t185;
+        let t187 = t155 * acceleration[2];
+        let t191 = t149 * acceleration[0] - t144 * acceleration[1];
+        let t192 = 82.64462809917356 * t191;
+        let t194 = 0.04321428571428571 * (t186 - t187 + t192);
+        let t198 = 3.5714285714285716 * t46;
+        let t203 = rate_1_leg1 + minus_rate_2_leg1;
+        let t204 = t128 - 1.0;
+        let t209 = minus_rate_2_leg1 + twist[2];
+        let t210 = t126 - t128;
+        let t212 = t157 + t155;
+        let t214 = t109 * t111;
         let g2_vx_leg2 = t74 * t69;
         let g2_vy_leg2 = t66 * t69;
         let rate_2_leg2 = g2_vx_leg2 * t38 + g2_vy_leg2 * t41;
-        let t237 = rate_2_leg2 * rate_2_leg2;
-        let t239 = t75 * t24 + t67 * t34 + 0.0784 * t237;
+        let t227 = rate_2_leg2 * rate_2_leg2;
+        let t229 = t75 * t24 + t67 * t34 + 0.0784 * t227;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t38 + minus_g1_vy_leg2 * t41;
-        let t243 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t245 = 0.5 * (t61 - 0.1568);
-        let minus_rate_dot_1_leg2 = t69 * (t239 + t243 * t245);
+        let t233 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t235 = 0.5 * (t61 - 0.1568);
+        let minus_rate_dot_1_leg2 = t69 * (t229 + t233 * t235);
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t257 = g2_vx_leg2 * t125 - g2_vy_leg2 * t120 - minus_g2_wz_leg2 * t134;
-        let t262 = t74 * t24 + t66 * t34 + 0.0784 * t243;
-        let rate_dot_2_leg2 = t69 * (t262 + t237 * t245);
-        let t266 = t257 * rate_dot_2_leg2;
-        let t271 = g2_vx_leg2 * t154 - g2_vy_leg2 * t149 + minus_g2_wz_leg2 * t160;
-        let t272 = t271 * rate_dot_2_leg2;
-        let t278 = 3.5714285714285716 * t239;
-        let t284 = minus_rate_1_leg2 + rate_2_leg2;
-        let t286 = t271 - 1.0;
-        let t290 = twist[2] - rate_2_leg2;
-        let t291 = t134 - t257;
-        let t293 = t271 + t160;
-        let t300 = acceleration[0] + t20 - t23;
-        let t303 = acceleration[1] + t30 + t33;
+        let t247 = g2_vx_leg2 * t117 - g2_vy_leg2 * t112 - minus_g2_wz_leg2 * t126;
+        let t252 = t74 * t24 + t66 * t34 + 0.0784 * t233;
+        let rate_dot_2_leg2 = t69 * (t252 + t227 * t235);
+        let t256 = t247 * rate_dot_2_leg2;
+        let t261 = g2_vx_leg2 * t149 - g2_vy_leg2 * t144 + minus_g2_wz_leg2 * t155;
+        let t262 = t261 * rate_dot_2_leg2;
+        let t268 = 3.5714285714285716 * t229;
+        let t274 = minus_rate_1_leg2 + rate_2_leg2;
+        let t276 = t261 - 1.0;
+        let t280 = twist[2] - rate_2_leg2;
+        let t281 = t126 - t247;
+        let t283 = t261 + t155;
+        let t289 = acceleration[0] - t23;
+        let t291 = acceleration[1] + t33;
         let minus_g2_vx_leg3 = t91 * t94;
-        let t307 = twist[0] + t32;
+        let t295 = twist[0] + t30;
         let minus_g2_vy_leg3 = t99 * t94;
-        let t310 = twist[1] + t22;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t307 + minus_g2_vy_leg3 * t310;
-        let t313 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t315 = t92 * t300 + t100 * t303 + 0.0784 * t313;
-        let rate_1_leg3 = g1_vx_leg3 * t307 + g1_vy_leg3 * t310;
-        let t319 = rate_1_leg3 * rate_1_leg3;
-        let t321 = 0.5 * (t86 - 0.1568);
-        let rate_dot_1_leg3 = t94 * (t315 + t319 * t321);
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t333 = minus_g2_vy_leg3 * t120 - minus_g2_vx_leg3 * t125
-            - minus_g2_wz_leg3 * t134;
-        let t338 = t91 * t300 + t99 * t303 + 0.0784 * t319;
-        let minus_rate_dot_2_leg3 = t94 * (t338 + t313 * t321);
-        let t342 = t333 * minus_rate_dot_2_leg3;
-        let t347 = minus_g2_vy_leg3 * t149 - minus_g2_vx_leg3 * t154
-            + minus_g2_wz_leg3 * t160;
-        let t348 = t347 * minus_rate_dot_2_leg3;
-        let t349 = t116 * t119;
-        let t351 = t112 * t119;
-        let t353 = minus_g2_vy_leg3 * t349 - minus_g2_vx_leg3 * t351;
-        let t354 = 2.0 * t353;
-        let t355 = t354 * minus_rate_dot_2_leg3;
-        let t358 = 0.04321428571428571 * (t164 - t177 + t182);
-        let t363 = 0.04321428571428571 * (t199 - (t194 + t193));
-        let t366 = t224 * acceleration[2];
-        let t368 = t224 * t174;
-        let t369 = 0.11 * t366 + t368;
-        let t370 = 0.7857142857142857 * t369;
-        let t374 = 3.5714285714285716 * t315;
-        let t382 = rate_1_leg3 + minus_rate_2_leg3;
-        let t385 = t354 - 1.0;
-        let t390 = minus_rate_2_leg3 + twist[2];
-        let t391 = t134 - t333;
-        let t393 = t347 + t160;
-        let t395 = t224 - t354;
-        let t400 = t79 - 0.3950502153918333;
-        let t402 = t400 * t400 + t85;
-        let t404 = 0.0784 / t402 - 0.25;
-        ::overact::guard::reach(t404, "leg4")?;
-        let t405 = ::overact::math::sqrt(t404);
-        let t407 = t97 + t400 * t405;
-        let t408 = t83 - t407;
-        let t409 = t402 * t405;
-        ::overact::guard::leg(t409, 0.07839913810297301, "leg4")?;
-        let t410 = 1.0 / t409;
-        let minus_g1_vy_leg4 = t408 * t410;
-        let t415 = 0.5 * t400 - t83 * t405;
-        let t416 = t400 - t415;
-        let minus_g1_vx_leg4 = t416 * t410;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t424 = minus_g1_vy_leg4 * t120 - minus_g1_vx_leg4 * t125
-            - minus_g1_wz_leg4 * t134;
-        let g2_vx_leg4 = t415 * t410;
-        let g2_vy_leg4 = t407 * t410;
-        let rate_2_leg4 = g2_vx_leg4 * t307 + g2_vy_leg4 * t310;
-        let t433 = rate_2_leg4 * rate_2_leg4;
-        let t435 = t416 * t300 + t408 * t303 + 0.0784 * t433;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t307 + minus_g1_vy_leg4 * t310;
-        let t439 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t441 = 0.5 * (t402 - 0.1568);
-        let minus_rate_dot_1_leg4 = t410 * (t435 + t439 * t441);
-        let t445 = t424 * minus_rate_dot_1_leg4;
-        let t450 = minus_g1_vy_leg4 * t149 - minus_g1_vx_leg4 * t154
-            + minus_g1_wz_leg4 * t160;
-        let t451 = t450 * minus_rate_dot_1_leg4;
-        let t454 = minus_g1_vy_leg4 * t349 - minus_g1_vx_leg4 * t351;
-        let t455 = 2.0 * t454;
-        let t456 = t455 * minus_rate_dot_1_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t470 = g2_vx_leg4 * t125 - g2_vy_leg4 * t120 + g2_wz_leg4 * t134;
-        let t475 = t415 * t300 + t407 * t303 + 0.0784 * t439;
-        let rate_dot_2_leg4 = t410 * (t475 + t433 * t441);
-        let t479 = t470 * rate_dot_2_leg4;
-        let t484 = g2_vx_leg4 * t154 - g2_vy_leg4 * t149 - g2_wz_leg4 * t160;
-        let t485 = t484 * rate_dot_2_leg4;
-        let t488 = g2_vx_leg4 * t351 - g2_vy_leg4 * t349;
-        let t489 = 2.0 * t488;
-        let t490 = t489 * rate_dot_2_leg4;
-        let t500 = 3.5714285714285716 * t475;
-        let t502 = 3.5714285714285716 * t435;
-        let t515 = minus_rate_1_leg4 + rate_2_leg4;
-        let t516 = t470 - t424;
-        let t518 = t484 - t450;
-        let t521 = 2.0 * (t488 - t454);
-        let t526 = twist[2] - rate_2_leg4;
-        let t527 = t134 - t470;
-        let t529 = t484 + t160;
-        let t531 = t224 - t489;
-        let t538 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t298 = twist[1] + t20;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t295 + minus_g2_vy_leg3 * t298;
+        let t301 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t303 = t92 * t289 + t100 * t291 + 0.0784 * t301;
+        let rate_1_leg3 = g1_vx_leg3 * t295 + g1_vy_leg3 * t298;
+        let t307 = rate_1_leg3 * rate_1_leg3;
+        let t309 = 0.5 * (t86 - 0.1568);
+        let rate_dot_1_leg3 = t94 * (t303 + t307 * t309);
+        let t317 = t2 * t214;
+        let t319 = t6 * t214;
+        let t322 = 2.0 * (minus_g2_vy_leg3 * t317 + minus_g2_vx_leg3 * t319);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * t322;
+        let t325 = minus_g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t117
+            - minus_g2_wz_leg3 * t126;
+        let t330 = t91 * t289 + t99 * t291 + 0.0784 * t307;
+        let minus_rate_dot_2_leg3 = t94 * (t330 + t301 * t309);
+        let t334 = t325 * minus_rate_dot_2_leg3;
+        let t339 = minus_g2_vy_leg3 * t144 - minus_g2_vx_leg3 * t149
+            + minus_g2_wz_leg3 * t155;
+        let t340 = t339 * minus_rate_dot_2_leg3;
+        let t341 = t322 * minus_rate_dot_2_leg3;
+        let t344 = 0.04321428571428571 * (t159 - t170 + t175);
+        let t349 = 0.04321428571428571 * (t192 - (t187 + t186));
+        let t352 = t214 * acceleration[2];
+        let t354 = t214 * t167;
+        let t355 = 0.11 * t352 + t354;
+        let t356 = 0.7857142857142857 * t355;
+        let t360 = 3.5714285714285716 * t303;
+        let t367 = rate_1_leg3 + minus_rate_2_leg3;
+        let t370 = t322 + 1.0;
+        let t375 = minus_rate_2_leg3 + twist[2];
+        let t376 = t126 - t325;
+        let t378 = t339 + t155;
+        let t380 = t214 + t322;
+        let t385 = t79 - 0.3950502153918333;
+        let t387 = t385 * t385 + t85;
+        let t389 = 0.0784 / t387 - 0.25;
+        ::overact::guard::reach(t389, "leg4")?;
+        let t390 = ::overact::math::sqrt(t389);
+        let t392 = t97 + t385 * t390;
+        let t393 = t83 - t392;
+        let t394 = t387 * t390;
+        ::overact::guard::leg(t394, 0.07839913810297301, "leg4")?;
+        let t395 = 1.0 / t394;
+        let minus_g1_vy_leg4 = t393 * t395;
+        let t400 = 0.5 * t385 - t83 * t390;
+        let t401 = t385 - t400;
+        let minus_g1_vx_leg4 = t401 * t395;
+        let t407 = minus_g1_vy_leg4 * t317 + minus_g1_vx_leg4 * t319;
+        let t408 = 2.0 * t407;
+        let minus_g1_wz_leg4 = g1_wz_leg3 * t408;
+        let t411 = minus_g1_vy_leg4 * t112 - minus_g1_vx_leg4 * t117
+            - minus_g1_wz_leg4 * t126;
+        let g2_vx_leg4 = t400 * t395;
+        let g2_vy_leg4 = t392 * t395;
+        let rate_2_leg4 = g2_vx_leg4 * t295 + g2_vy_leg4 * t298;
+        let t420 = rate_2_leg4 * rate_2_leg4;
+        let t422 = t401 * t289 + t393 * t291 + 0.0784 * t420;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t295 + minus_g1_vy_leg4 * t298;
+        let t426 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t428 = 0.5 * (t387 - 0.1568);
+        let minus_rate_dot_1_leg4 = t395 * (t422 + t426 * t428);
+        let t432 = t411 * minus_rate_dot_1_leg4;
+        let t437 = minus_g1_vy_leg4 * t144 - minus_g1_vx_leg4 * t149
+            + minus_g1_wz_leg4 * t155;
+        let t438 = t437 * minus_rate_dot_1_leg4;
+        let t439 = t408 * minus_rate_dot_1_leg4;
+        let t451 = g2_vx_leg4 * t319 + g2_vy_leg4 * t317;
+        let t452 = 2.0 * t451;
+        let g2_wz_leg4 = g1_wz_leg3 * t452;
+        let t455 = g2_vx_leg4 * t117 - g2_vy_leg4 * t112 + g2_wz_leg4 * t126;
+        let t460 = t400 * t289 + t392 * t291 + 0.0784 * t426;
+        let rate_dot_2_leg4 = t395 * (t460 + t420 * t428);
+        let t464 = t455 * rate_dot_2_leg4;
+        let t469 = g2_vx_leg4 * t149 - g2_vy_leg4 * t144 - g2_wz_leg4 * t155;
+        let t470 = t469 * rate_dot_2_leg4;
+        let t471 = t452 * rate_dot_2_leg4;
+        let t481 = 3.5714285714285716 * t460;
+        let t483 = 3.5714285714285716 * t422;
+        let t496 = minus_rate_1_leg4 + rate_2_leg4;
+        let t497 = t455 - t411;
+        let t499 = t469 - t437;
+        let t501 = t408 + t452;
+        let t506 = twist[2] - rate_2_leg4;
+        let t507 = t126 - t455;
+        let t509 = t469 + t155;
+        let t511 = t214 - t452;
+        let t521 = c_phi * acceleration[1] - s_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t145, t184 - 0.28 * (rate_dot_1_leg1 - t145),
-                3.5714285714285716 * t141 - t136 * t205, 0.0784 * rate_dot_1_leg1, -(t210 * t211),
-                -::overact::math::signed(t211, t210), t211, t216 * t217,
-                ::overact::math::signed(t217, t216), t217, 0.0, 0.0, 0.0, 0.0, 0.0, t266,
-                t184 - 0.28 * t266, -(t257 * t278), 0.0, t257 * t284,
-                ::overact::math::signed(t257, t284), t257, t290 * t291,
-                ::overact::math::signed(t291, t290), t291, 0.0, 0.0, 0.0, 0.0, 0.0, -t342,
-                t358 + 0.28 * t342, -(t333 * t374), 0.0, -(t333 * t382),
-                -::overact::math::signed(t333, t382), t333, t390 * t391,
-                ::overact::math::signed(t391, t390), t391, -t445, -t445,
-                -(t424 * minus_rate_1_leg4), -::overact::math::signed(t424, minus_rate_1_leg4),
-                t424, t479, t358 - 0.28 * (t479 - t445), t424 * t500 - t470 * t502,
-                -(0.0784 * t445), t515 * t516, ::overact::math::signed(t516, t515), t516,
-                t526 * t527, ::overact::math::signed(t527, t526), t527, t164,
-                t134 * t538 - (t125 * t166 + t120 * t169), t176, t181,
+                1.0, -t137, t177 - 0.28 * (rate_dot_1_leg1 - t137),
+                3.5714285714285716 * t133 - t128 * t198, 0.0784 * rate_dot_1_leg1, -(t203 * t204),
+                -::overact::math::signed(t204, t203), t204, t209 * t210,
+                ::overact::math::signed(t210, t209), t210, 0.0, 0.0, 0.0, 0.0, 0.0, t256,
+                t177 - 0.28 * t256, -(t247 * t268), 0.0, t247 * t274,
+                ::overact::math::signed(t247, t274), t247, t280 * t281,
+                ::overact::math::signed(t281, t280), t281, 0.0, 0.0, 0.0, 0.0, 0.0, -t334,
+                t344 + 0.28 * t334, -(t325 * t360), 0.0, -(t325 * t367),
+                -::overact::math::signed(t325, t367), t325, t375 * t376,
+                ::overact::math::signed(t376, t375), t376, -t432, -t432,
+                -(t411 * minus_rate_1_leg4), -::overact::math::signed(t411, minus_rate_1_leg4),
+                t411, t464, t344 - 0.28 * (t464 - t432), t411 * t481 - t455 * t483,
+                -(0.0784 * t432), t496 * t497, ::overact::math::signed(t497, t496), t497,
+                t506 * t507, ::overact::math::signed(t507, t506), t507, t159,
+                t112 * t160 - t117 * t162 + t126 * t521, t169, t174,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t163, t201 + 0.28 * t163, -(t162 * t205), 0.0,
-                -(t162 * t210), -::overact::math::signed(t162, t210), t162, -(t216 * t219),
-                -::overact::math::signed(t219, t216), -t219, -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t158, t194 + 0.28 * t158, -(t157 * t198), 0.0,
+                -(t157 * t203), -::overact::math::signed(t157, t203), t157, -(t209 * t212),
+                -::overact::math::signed(t212, t209), -t212, -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, t272,
-                t201 - 0.28 * (t272 - minus_rate_dot_1_leg2),
-                3.5714285714285716 * t262 - t271 * t278, -(0.0784 * minus_rate_dot_1_leg2),
-                t284 * t286, ::overact::math::signed(t286, t284), t286, -(t290 * t293),
-                -::overact::math::signed(t293, t290), -t293, 0.0, 0.0, 0.0, 0.0, 0.0, -t348,
-                t363 + 0.28 * t348, -(t347 * t374), 0.0, -(t347 * t382),
-                -::overact::math::signed(t347, t382), t347, -(t390 * t393),
-                -::overact::math::signed(t393, t390), -t393, -t451, -t451,
-                -(t450 * minus_rate_1_leg4), -::overact::math::signed(t450, minus_rate_1_leg4),
-                t450, t485, t363 - 0.28 * (t485 - t451), t450 * t500 - t484 * t502,
-                -(0.0784 * t451), t515 * t518, ::overact::math::signed(t518, t515), t518,
-                -(t526 * t529), -::overact::math::signed(t529, t526), -t529, -t194,
-                -(t154 * t166 + t149 * t169 + t160 * t538), t192, t198,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, t262,
+                t194 - 0.28 * (t262 - minus_rate_dot_1_leg2),
+                3.5714285714285716 * t252 - t261 * t268, -(0.0784 * minus_rate_dot_1_leg2),
+                t274 * t276, ::overact::math::signed(t276, t274), t276, -(t280 * t283),
+                -::overact::math::signed(t283, t280), -t283, 0.0, 0.0, 0.0, 0.0, 0.0, -t340,
+                t349 + 0.28 * t340, -(t339 * t360), 0.0, -(t339 * t367),
+                -::overact::math::signed(t339, t367), t339, -(t375 * t378),
+                -::overact::math::signed(t378, t375), -t378, -t438, -t438,
+                -(t437 * minus_rate_1_leg4), -::overact::math::signed(t437, minus_rate_1_leg4),
+                t437, t470, t349 - 0.28 * (t470 - t438), t437 * t481 - t469 * t483,
+                -(0.0784 * t438), t496 * t499, ::overact::math::signed(t499, t496), t499,
+                -(t506 * t509), -::overact::math::signed(t509, t506), -t509, -t187,
+                t144 * t160 - t149 * t162 - t155 * t521, t185, t191,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t224 * t216,
-                ::overact::math::signed(t224, t216), t224, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t224 * t290, ::overact::math::signed(t224, t290), t224,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t214 * t209,
+                ::overact::math::signed(t214, t209), t214, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t214 * t280, ::overact::math::signed(t214, t280), t214,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, -t355, t370 - 0.28 * (rate_dot_1_leg3 - t355),
-                3.5714285714285716 * t338 - 7.142857142857143 * (t353 * t315),
-                0.0784 * rate_dot_1_leg3, -(t382 * t385), -::overact::math::signed(t385, t382),
-                t385, t390 * t395, ::overact::math::signed(t395, t390), t395, -t456, -t456,
-                -(t455 * minus_rate_1_leg4), -::overact::math::signed(t455, minus_rate_1_leg4),
-                t455, t490, t370 - 0.28 * (t490 - t456),
-                7.142857142857143 * (t454 * t475 - t488 * t435), -(0.0784 * t456), t515 * t521,
-                ::overact::math::signed(t521, t515), t521, t526 * t531,
-                ::overact::math::signed(t531, t526), t531, t366,
-                t224 * t538 - (t351 * t166 + t349 * t169), -t369, 0.11 * t368,
+                1.0, t341, t356 - 0.28 * (rate_dot_1_leg3 + t341),
+                3.5714285714285716 * t330 + t360 * t322, 0.0784 * rate_dot_1_leg3, t367 * t370,
+                ::overact::math::signed(t370, t367), -t370, t375 * t380,
+                ::overact::math::signed(t380, t375), t380, t439, t439, t408 * minus_rate_1_leg4,
+                ::overact::math::signed(t408, minus_rate_1_leg4), -t408, t471,
+                t356 - 0.28 * (t471 + t439), -(7.142857142857143 * (t407 * t460 + t451 * t422)),
+                0.0784 * t439, t496 * t501, ::overact::math::signed(t501, t496), t501, t506 * t511,
+                ::overact::math::signed(t511, t506), t511, t352,
+                t214 * t521 - (t317 * t160 + t319 * t162), -t355, 0.11 * t354,
             ],
         ])
     }
@@ -2648,7 +2633,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 471 operations (165 additions, 301 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 383 intermediates.
+    /// 454 operations (156 additions, 293 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 366 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2671,20 +2656,18 @@ impl DualV {
         let t2 = 3.5714285714285716 / s2_leg1;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t13 = 0.11 * c_phi;
-        let t14 = t13 * acceleration[2];
-        let t16 = 0.11 * s_phi;
-        let t17 = t16 * twist[2];
-        let t18 = twist[2] * t17;
-        let t19 = acceleration[0] - t14 + t18;
-        let t21 = t16 * acceleration[2];
-        let t23 = t13 * twist[2];
-        let t24 = twist[2] * t23;
-        let t25 = acceleration[1] - t21 - t24;
+        let t13 = 0.11 * s_phi;
+        let t14 = t13 * twist[2];
+        let t16 = 0.11 * c_phi;
+        let t18 = twist[2] * t14 - t16 * acceleration[2];
+        let t19 = acceleration[0] + t18;
+        let t21 = t16 * twist[2];
+        let t24 = twist[2] * t21 + t13 * acceleration[2];
+        let t25 = acceleration[1] - t24;
         let minus_g2_vx_leg1 = c1_leg1 * t2;
-        let t29 = twist[0] - t23;
+        let t29 = twist[0] - t21;
         let minus_g2_vy_leg1 = s1_leg1 * t2;
-        let t32 = twist[1] - t17;
+        let t32 = twist[1] - t14;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t29 + minus_g2_vy_leg1 * t32;
         let t35 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t37 = c12_leg1 * t19 + s12_leg1 * t25 + 0.28 * t35;
@@ -2703,10 +2686,10 @@ impl DualV {
         let t71 = 3.5714285714285716 / s2_leg3;
         let g1_vy_leg3 = s12_leg3 * t71;
         let g1_vx_leg3 = c12_leg3 * t71;
-        let g1_wz_leg3 = t16 * g1_vy_leg3 + t13 * g1_vx_leg3;
+        let g1_wz_leg3 = t13 * g1_vy_leg3 + t16 * g1_vx_leg3;
         let g1_vy_leg2 = s12_leg2 * t59;
-        let minus_g1_wz_leg2 = t16 * g1_vy_leg2 + t13 * g1_vx_leg2;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t16 + g1_vx_leg1 * t13;
+        let minus_g1_wz_leg2 = t13 * g1_vy_leg2 + t16 * g1_vx_leg2;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * t13 + g1_vx_leg1 * t16;
         let t89 = minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3;
         let t93 = minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
         let t98 = g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3;
@@ -2717,7 +2700,7 @@ impl DualV {
         let t101 = 1.0 / t100;
         let t102 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t101;
         let t107 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t101;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t16 + minus_g2_vx_leg1 * t13;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t13 + minus_g2_vx_leg1 * t16;
         let t116 = (g1_vx_leg2 * g1_vy_leg3 - g1_vy_leg2 * g1_vx_leg3) * t101;
         let t118 = minus_g2_vy_leg1 * t102 - minus_g2_vx_leg1 * t107 + g2_wz_leg1 * t116;
         let t123 = c1_leg1 * t19 + s1_leg1 * t25 + 0.28 * t43;
@@ -2729,178 +2712,174 @@ impl DualV {
         let t135 = minus_g2_vx_leg1 * t128 - minus_g2_vy_leg1 * t130 + g2_wz_leg1 * t133;
         let t136 = t135 * minus_rate_dot_2_leg1;
         let t137 = t116 * acceleration[2];
-        let t139 = 9.090909090909092 * (t24 + t21);
-        let t142 = 9.090909090909092 * (t14 - t18);
-        let t147 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t149 = t102 * t139 - t107 * t142 - t116 * t147;
-        let t150 = 9.090909090909092 * t149;
-        let t154 = t107 * acceleration[0] - t102 * acceleration[1];
-        let t155 = 82.64462809917356 * t154;
-        let t157 = 0.04321428571428571 * (t137 + t150 + t155);
-        let t161 = t133 * acceleration[2];
-        let t166 = t128 * t142 - t130 * t139 - t133 * t147;
-        let t167 = 9.090909090909092 * t166;
-        let t171 = t130 * acceleration[1] - t128 * acceleration[0];
-        let t172 = 82.64462809917356 * t171;
-        let t174 = 0.04321428571428571 * (t161 + t167 + t172);
-        let t181 = rate_1_leg1 + minus_rate_2_leg1;
-        let t182 = t118 - 1.0;
-        let t187 = minus_rate_2_leg1 + twist[2];
-        let t188 = t116 - t118;
-        let t190 = t133 - t135;
-        let t195 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t101;
+        let t138 = 9.090909090909092 * t18;
+        let t140 = 9.090909090909092 * t24;
+        let t145 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t147 = t107 * t138 + t102 * t140 - t116 * t145;
+        let t148 = 9.090909090909092 * t147;
+        let t152 = t107 * acceleration[0] - t102 * acceleration[1];
+        let t153 = 82.64462809917356 * t152;
+        let t155 = 0.04321428571428571 * (t137 + t148 + t153);
+        let t159 = t133 * acceleration[2];
+        let t164 = t128 * t138 + t130 * t140 + t133 * t145;
+        let t165 = 9.090909090909092 * t164;
+        let t169 = t130 * acceleration[1] - t128 * acceleration[0];
+        let t170 = 82.64462809917356 * t169;
+        let t172 = 0.04321428571428571 * (t159 - t165 + t170);
+        let t179 = rate_1_leg1 + minus_rate_2_leg1;
+        let t180 = t118 - 1.0;
+        let t185 = minus_rate_2_leg1 + twist[2];
+        let t186 = t116 - t118;
+        let t188 = t133 - t135;
+        let t193 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t101;
         let minus_g2_vx_leg2 = c1_leg2 * t59;
         let minus_g2_vy_leg2 = s1_leg2 * t59;
         let minus_rate_2_leg2 = minus_g2_vx_leg2 * t29 + minus_g2_vy_leg2 * t32;
-        let t208 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t210 = c12_leg2 * t19 + s12_leg2 * t25 + 0.28 * t208;
+        let t206 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t208 = c12_leg2 * t19 + s12_leg2 * t25 + 0.28 * t206;
         let rate_1_leg2 = g1_vx_leg2 * t29 + g1_vy_leg2 * t32;
-        let t214 = rate_1_leg2 * rate_1_leg2;
-        let t215 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t59 * (t210 + t214 * t215);
-        let g2_wz_leg2 = t16 * minus_g2_vy_leg2 + t13 * minus_g2_vx_leg2;
-        let t227 = minus_g2_vy_leg2 * t102 - minus_g2_vx_leg2 * t107 + g2_wz_leg2 * t116;
-        let t232 = c1_leg2 * t19 + s1_leg2 * t25 + 0.28 * t214;
-        let minus_rate_dot_2_leg2 = t59 * (t232 + t208 * t215);
-        let t236 = t227 * minus_rate_dot_2_leg2;
-        let t241 = minus_g2_vx_leg2 * t128 - minus_g2_vy_leg2 * t130 + g2_wz_leg2 * t133;
-        let t242 = t241 * minus_rate_dot_2_leg2;
-        let t252 = rate_1_leg2 + minus_rate_2_leg2;
-        let t254 = t241 - 1.0;
-        let t258 = minus_rate_2_leg2 + twist[2];
-        let t259 = t116 - t227;
-        let t261 = t133 - t241;
-        let t268 = acceleration[0] + t14 - t18;
-        let t271 = acceleration[1] + t21 + t24;
+        let t212 = rate_1_leg2 * rate_1_leg2;
+        let t213 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t59 * (t208 + t212 * t213);
+        let g2_wz_leg2 = t13 * minus_g2_vy_leg2 + t16 * minus_g2_vx_leg2;
+        let t225 = minus_g2_vy_leg2 * t102 - minus_g2_vx_leg2 * t107 + g2_wz_leg2 * t116;
+        let t230 = c1_leg2 * t19 + s1_leg2 * t25 + 0.28 * t212;
+        let minus_rate_dot_2_leg2 = t59 * (t230 + t206 * t213);
+        let t234 = t225 * minus_rate_dot_2_leg2;
+        let t239 = minus_g2_vx_leg2 * t128 - minus_g2_vy_leg2 * t130 + g2_wz_leg2 * t133;
+        let t240 = t239 * minus_rate_dot_2_leg2;
+        let t250 = rate_1_leg2 + minus_rate_2_leg2;
+        let t252 = t239 - 1.0;
+        let t256 = minus_rate_2_leg2 + twist[2];
+        let t257 = t116 - t225;
+        let t259 = t133 - t239;
+        let t265 = acceleration[0] - t18;
+        let t267 = acceleration[1] + t24;
         let minus_g2_vx_leg3 = c1_leg3 * t71;
-        let t275 = twist[0] + t23;
+        let t271 = twist[0] + t21;
         let minus_g2_vy_leg3 = s1_leg3 * t71;
-        let t278 = twist[1] + t17;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t275 + minus_g2_vy_leg3 * t278;
-        let t281 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t283 = c12_leg3 * t268 + s12_leg3 * t271 + 0.28 * t281;
-        let rate_1_leg3 = g1_vx_leg3 * t275 + g1_vy_leg3 * t278;
-        let t287 = rate_1_leg3 * rate_1_leg3;
-        let t288 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t71 * (t283 + t287 * t288);
-        let minus_g2_wz_leg3 = t16 * minus_g2_vy_leg3 + t13 * minus_g2_vx_leg3;
+        let t274 = twist[1] + t14;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t271 + minus_g2_vy_leg3 * t274;
+        let t277 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t279 = c12_leg3 * t265 + s12_leg3 * t267 + 0.28 * t277;
+        let rate_1_leg3 = g1_vx_leg3 * t271 + g1_vy_leg3 * t274;
+        let t283 = rate_1_leg3 * rate_1_leg3;
+        let t284 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t71 * (t279 + t283 * t284);
+        let t292 = t16 * t193;
+        let t294 = t13 * t193;
+        let t297 = 2.0 * (minus_g2_vx_leg3 * t292 + minus_g2_vy_leg3 * t294);
+        let minus_minus_g2_wz_leg3 = g1_wz_leg3 * t297;
         let t300 = minus_g2_vy_leg3 * t102 - minus_g2_vx_leg3 * t107
-            - minus_g2_wz_leg3 * t116;
-        let t305 = c1_leg3 * t268 + s1_leg3 * t271 + 0.28 * t287;
-        let minus_rate_dot_2_leg3 = t71 * (t305 + t281 * t288);
+            + minus_minus_g2_wz_leg3 * t116;
+        let t305 = c1_leg3 * t265 + s1_leg3 * t267 + 0.28 * t283;
+        let minus_rate_dot_2_leg3 = t71 * (t305 + t277 * t284);
         let t309 = t300 * minus_rate_dot_2_leg3;
         let t314 = minus_g2_vx_leg3 * t128 - minus_g2_vy_leg3 * t130
-            - minus_g2_wz_leg3 * t133;
+            + minus_minus_g2_wz_leg3 * t133;
         let t315 = t314 * minus_rate_dot_2_leg3;
-        let t319 = (g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2)
-            * t101;
-        let t324 = (g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2)
-            * t101;
-        let t327 = 2.0 * (minus_g2_vx_leg3 * t319 - minus_g2_vy_leg3 * t324);
-        let t328 = t327 * minus_rate_dot_2_leg3;
-        let t331 = 0.04321428571428571 * (t137 - t150 + t155);
-        let t336 = 0.04321428571428571 * (t161 - t167 + t172);
-        let t339 = t195 * acceleration[2];
-        let t341 = t195 * t147;
-        let t342 = 0.11 * t339 + t341;
-        let t343 = 0.7857142857142857 * t342;
-        let t352 = rate_1_leg3 + minus_rate_2_leg3;
-        let t355 = t327 - 1.0;
-        let t360 = minus_rate_2_leg3 + twist[2];
-        let t361 = t116 - t300;
-        let t363 = t133 - t314;
-        let t365 = t327 + t195;
+        let t316 = t297 * minus_rate_dot_2_leg3;
+        let t319 = 0.04321428571428571 * (t137 - t148 + t153);
+        let t324 = 0.04321428571428571 * (t159 + t165 + t170);
+        let t327 = t193 * acceleration[2];
+        let t329 = t193 * t145;
+        let t330 = 0.11 * t327 + t329;
+        let t331 = 0.7857142857142857 * t330;
+        let t340 = rate_1_leg3 + minus_rate_2_leg3;
+        let t343 = t297 - 1.0;
+        let t348 = minus_rate_2_leg3 + twist[2];
+        let t349 = t116 - t300;
+        let t351 = t133 - t314;
+        let t353 = t297 + t193;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t380 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t380;
-        let g1_vy_leg4 = s12_leg4 * t380;
-        let g1_wz_leg4 = t16 * g1_vy_leg4 + t13 * g1_vx_leg4;
-        let t390 = g1_vx_leg4 * t107 - g1_vy_leg4 * t102 + g1_wz_leg4 * t116;
-        let minus_g2_vx_leg4 = c1_leg4 * t380;
-        let minus_g2_vy_leg4 = s1_leg4 * t380;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t275 + minus_g2_vy_leg4 * t278;
-        let t399 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t401 = c12_leg4 * t268 + s12_leg4 * t271 + 0.28 * t399;
-        let rate_1_leg4 = g1_vx_leg4 * t275 + g1_vy_leg4 * t278;
-        let t405 = rate_1_leg4 * rate_1_leg4;
-        let t406 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t380 * (t401 + t405 * t406);
-        let t410 = t390 * rate_dot_1_leg4;
-        let t415 = g1_vy_leg4 * t130 - g1_vx_leg4 * t128 + g1_wz_leg4 * t133;
-        let t416 = t415 * rate_dot_1_leg4;
-        let t419 = g1_vy_leg4 * t324 - g1_vx_leg4 * t319;
-        let t420 = 2.0 * t419;
-        let t421 = t420 * rate_dot_1_leg4;
-        let minus_g2_wz_leg4 = t16 * minus_g2_vy_leg4 + t13 * minus_g2_vx_leg4;
-        let t435 = minus_g2_vy_leg4 * t102 - minus_g2_vx_leg4 * t107
-            - minus_g2_wz_leg4 * t116;
-        let t440 = c1_leg4 * t268 + s1_leg4 * t271 + 0.28 * t405;
-        let minus_rate_dot_2_leg4 = t380 * (t440 + t399 * t406);
-        let t444 = t435 * minus_rate_dot_2_leg4;
-        let t449 = minus_g2_vx_leg4 * t128 - minus_g2_vy_leg4 * t130
-            - minus_g2_wz_leg4 * t133;
-        let t450 = t449 * minus_rate_dot_2_leg4;
-        let t453 = minus_g2_vx_leg4 * t319 - minus_g2_vy_leg4 * t324;
-        let t454 = 2.0 * t453;
-        let t455 = t454 * minus_rate_dot_2_leg4;
-        let t477 = rate_1_leg4 + minus_rate_2_leg4;
-        let t478 = t435 - t390;
-        let t480 = t449 - t415;
-        let t483 = 2.0 * (t453 - t419);
-        let t488 = minus_rate_2_leg4 + twist[2];
-        let t489 = t116 - t435;
-        let t491 = t133 - t449;
-        let t493 = t454 + t195;
-        let t500 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t368 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t368;
+        let g1_vy_leg4 = s12_leg4 * t368;
+        let t377 = 2.0 * (g1_vy_leg4 * t294 + g1_vx_leg4 * t292);
+        let minus_g1_wz_leg4 = g1_wz_leg3 * t377;
+        let t380 = g1_vx_leg4 * t107 - g1_vy_leg4 * t102 - minus_g1_wz_leg4 * t116;
+        let minus_g2_vx_leg4 = c1_leg4 * t368;
+        let minus_g2_vy_leg4 = s1_leg4 * t368;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t271 + minus_g2_vy_leg4 * t274;
+        let t389 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t391 = c12_leg4 * t265 + s12_leg4 * t267 + 0.28 * t389;
+        let rate_1_leg4 = g1_vx_leg4 * t271 + g1_vy_leg4 * t274;
+        let t395 = rate_1_leg4 * rate_1_leg4;
+        let t396 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t368 * (t391 + t395 * t396);
+        let t400 = t380 * rate_dot_1_leg4;
+        let t405 = g1_vy_leg4 * t130 - g1_vx_leg4 * t128 - minus_g1_wz_leg4 * t133;
+        let t406 = t405 * rate_dot_1_leg4;
+        let t407 = t377 * rate_dot_1_leg4;
+        let t420 = 2.0 * (minus_g2_vx_leg4 * t292 + minus_g2_vy_leg4 * t294);
+        let minus_minus_g2_wz_leg4 = g1_wz_leg3 * t420;
+        let t423 = minus_g2_vy_leg4 * t102 - minus_g2_vx_leg4 * t107
+            + minus_minus_g2_wz_leg4 * t116;
+        let t428 = c1_leg4 * t265 + s1_leg4 * t267 + 0.28 * t395;
+        let minus_rate_dot_2_leg4 = t368 * (t428 + t389 * t396);
+        let t432 = t423 * minus_rate_dot_2_leg4;
+        let t437 = minus_g2_vx_leg4 * t128 - minus_g2_vy_leg4 * t130
+            + minus_minus_g2_wz_leg4 * t133;
+        let t438 = t437 * minus_rate_dot_2_leg4;
+        let t439 = t420 * minus_rate_dot_2_leg4;
+        let t461 = rate_1_leg4 + minus_rate_2_leg4;
+        let t462 = t423 - t380;
+        let t464 = t437 - t405;
+        let t466 = t377 + t420;
+        let t471 = minus_rate_2_leg4 + twist[2];
+        let t472 = t116 - t423;
+        let t474 = t133 - t437;
+        let t476 = t420 + t193;
+        let t486 = c_phi * acceleration[1] - s_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t127, t157 - 0.28 * (rate_dot_1_leg1 - t127), t123 - t118 * t37,
-                0.0784 * rate_dot_1_leg1, -(t181 * t182), -::overact::math::signed(t182, t181),
-                t182, t187 * t188, ::overact::math::signed(t188, t187), t188, 0.0, 0.0, 0.0, 0.0,
-                0.0, -t236, t157 + 0.28 * t236, -(t227 * t210), 0.0, -(t227 * t252),
-                -::overact::math::signed(t227, t252), t227, t258 * t259,
-                ::overact::math::signed(t259, t258), t259, 0.0, 0.0, 0.0, 0.0, 0.0, -t309,
-                t331 + 0.28 * t309, -(t300 * t283), 0.0, -(t300 * t352),
-                -::overact::math::signed(t300, t352), t300, t360 * t361,
-                ::overact::math::signed(t361, t360), t361, t410, t410, t390 * rate_1_leg4,
-                ::overact::math::signed(t390, rate_1_leg4), t390, -t444,
-                t331 - 0.28 * (t410 - t444), t390 * t440 - t435 * t401, 0.0784 * t410,
-                -(t477 * t478), -::overact::math::signed(t478, t477), t478, t488 * t489,
-                ::overact::math::signed(t489, t488), t489, t137,
-                t116 * t500 - (t107 * t139 + t102 * t142), t149, t154,
+                1.0, -t127, t155 - 0.28 * (rate_dot_1_leg1 - t127), t123 - t118 * t37,
+                0.0784 * rate_dot_1_leg1, -(t179 * t180), -::overact::math::signed(t180, t179),
+                t180, t185 * t186, ::overact::math::signed(t186, t185), t186, 0.0, 0.0, 0.0, 0.0,
+                0.0, -t234, t155 + 0.28 * t234, -(t225 * t208), 0.0, -(t225 * t250),
+                -::overact::math::signed(t225, t250), t225, t256 * t257,
+                ::overact::math::signed(t257, t256), t257, 0.0, 0.0, 0.0, 0.0, 0.0, -t309,
+                t319 + 0.28 * t309, -(t300 * t279), 0.0, -(t300 * t340),
+                -::overact::math::signed(t300, t340), t300, t348 * t349,
+                ::overact::math::signed(t349, t348), t349, t400, t400, t380 * rate_1_leg4,
+                ::overact::math::signed(t380, rate_1_leg4), t380, -t432,
+                t319 - 0.28 * (t400 - t432), t380 * t428 - t423 * t391, 0.0784 * t400,
+                -(t461 * t462), -::overact::math::signed(t462, t461), t462, t471 * t472,
+                ::overact::math::signed(t472, t471), t472, t137,
+                t102 * t138 - t107 * t140 + t116 * t486, t147, t152,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t136, t174 + 0.28 * t136, -(t135 * t37), 0.0,
-                -(t135 * t181), -::overact::math::signed(t135, t181), t135, t187 * t190,
-                ::overact::math::signed(t190, t187), t190, rate_dot_1_leg2, rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t242,
-                t174 - 0.28 * (rate_dot_1_leg2 - t242), t232 - t241 * t210,
-                0.0784 * rate_dot_1_leg2, -(t252 * t254), -::overact::math::signed(t254, t252),
-                t254, t258 * t261, ::overact::math::signed(t261, t258), t261, 0.0, 0.0, 0.0, 0.0,
-                0.0, -t315, t336 + 0.28 * t315, -(t314 * t283), 0.0, -(t314 * t352),
-                -::overact::math::signed(t314, t352), t314, t360 * t363,
-                ::overact::math::signed(t363, t360), t363, t416, t416, t415 * rate_1_leg4,
-                ::overact::math::signed(t415, rate_1_leg4), t415, -t450,
-                t336 - 0.28 * (t416 - t450), t415 * t440 - t449 * t401, 0.0784 * t416,
-                -(t477 * t480), -::overact::math::signed(t480, t477), t480, t488 * t491,
-                ::overact::math::signed(t491, t488), t491, t161,
-                t128 * t139 + t130 * t142 + t133 * t500, t166, t171,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t136, t172 + 0.28 * t136, -(t135 * t37), 0.0,
+                -(t135 * t179), -::overact::math::signed(t135, t179), t135, t185 * t188,
+                ::overact::math::signed(t188, t185), t188, rate_dot_1_leg2, rate_dot_1_leg2,
+                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t240,
+                t172 - 0.28 * (rate_dot_1_leg2 - t240), t230 - t239 * t208,
+                0.0784 * rate_dot_1_leg2, -(t250 * t252), -::overact::math::signed(t252, t250),
+                t252, t256 * t259, ::overact::math::signed(t259, t256), t259, 0.0, 0.0, 0.0, 0.0,
+                0.0, -t315, t324 + 0.28 * t315, -(t314 * t279), 0.0, -(t314 * t340),
+                -::overact::math::signed(t314, t340), t314, t348 * t351,
+                ::overact::math::signed(t351, t348), t351, t406, t406, t405 * rate_1_leg4,
+                ::overact::math::signed(t405, rate_1_leg4), t405, -t438,
+                t324 - 0.28 * (t406 - t438), t405 * t428 - t437 * t391, 0.0784 * t406,
+                -(t461 * t464), -::overact::math::signed(t464, t461), t464, t471 * t474,
+                ::overact::math::signed(t474, t471), t474, t159,
+                t128 * t140 - t130 * t138 + t133 * t486, -t164, t169,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t195 * t187),
-                -::overact::math::signed(t195, t187), -t195, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, -(t195 * t258), -::overact::math::signed(t195, t258), -t195,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t193 * t185),
+                -::overact::math::signed(t193, t185), -t193, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -(t193 * t256), -::overact::math::signed(t193, t256), -t193,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, -t328, -(t343 + 0.28 * (rate_dot_1_leg3 - t328)), t305 - t327 * t283,
-                0.0784 * rate_dot_1_leg3, -(t352 * t355), -::overact::math::signed(t355, t352),
-                t355, -(t360 * t365), -::overact::math::signed(t365, t360), -t365, t421, t421,
-                t420 * rate_1_leg4, ::overact::math::signed(t420, rate_1_leg4), t420, -t455,
-                -(t343 + 0.28 * (t421 - t455)), t420 * t440 - t454 * t401, 0.0784 * t421,
-                -(t477 * t483), -::overact::math::signed(t483, t477), t483, -(t488 * t493),
-                -::overact::math::signed(t493, t488), -t493, -t339,
-                t319 * t139 + t324 * t142 - t195 * t500, t342, -(0.11 * t341),
+                1.0, -t316, -(t331 + 0.28 * (rate_dot_1_leg3 - t316)), t305 - t297 * t279,
+                0.0784 * rate_dot_1_leg3, -(t340 * t343), -::overact::math::signed(t343, t340),
+                t343, -(t348 * t353), -::overact::math::signed(t353, t348), -t353, -t407, -t407,
+                -(t377 * rate_1_leg4), -::overact::math::signed(t377, rate_1_leg4), -t377, -t439,
+                -(t331 - 0.28 * (t407 + t439)), -(t377 * t428 + t420 * t391), -(0.0784 * t407),
+                -(t461 * t466), -::overact::math::signed(t466, t461), t466, -(t471 * t476),
+                -::overact::math::signed(t476, t471), -t476, -t327,
+                t292 * t140 + t294 * t138 - t193 * t486, t330, -(0.11 * t329),
             ],
         ])
     }
@@ -2915,7 +2894,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 677 operations (262 additions, 403 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 577 intermediates.
+    /// 657 operations (252 additions, 393 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 557 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3001,287 +2980,283 @@ impl DualV {
         let t101 = t90 + t56 * t62;
         let t102 = t41 - t101;
         let minus_g1_vy_leg4 = t102 * t67;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t115 = g1_vx_leg3 * g1_wz_leg3
+        let t106 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t107 = g1_wz_leg3 * t106;
+        ::overact::guard::platform(t107, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t107, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t107, 3.5376915986291904, "kept actuators")?;
+        let t108 = 0.5 / t107;
+        let t109 = t106 * t108;
+        let t110 = t2 * t109;
+        let t112 = t6 * t109;
+        let t114 = minus_g1_vy_leg4 * t110 + minus_g1_vx_leg4 * t112;
+        let t115 = 2.0 * t114;
+        let minus_g1_wz_leg4 = g1_wz_leg3 * t115;
+        let t125 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t116 = t115 * t71;
-        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        let t126 = t125 * t71;
+        let t142 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t134 = g1_vy_leg3 * g1_wz_leg3
+        let t144 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
-        let t142 = t132 * t71;
-        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t142 * t126;
+        let t152 = t142 * t71;
+        let t154 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t132 * t142;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = t134 * t145;
-        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
-            - t134 * t146;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - t142 * t152;
+        ::overact::guard::platform(t154, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t154, 25.592368899353342, "actuators")?;
+        let t155 = 1.0 / t154;
+        let t156 = t144 * t155;
+        let t158 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t125 * t126
+            - t144 * t156;
+        ::overact::guard::platform(t158, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t158, 0.3076928490286828, "actuators")?;
+        let t159 = 1.0 / t158;
+        let t173 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t174 = g1_vy_leg1 * actuator_velocities[0]
+        let t184 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
-        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t173 * t152;
+        let t186 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
-        let rate_3_leg1 = t149 * t176;
-        let t178 = t6 * rate_3_leg1;
-        let t179 = rate_3_leg1 * t178;
-        let t181 = t2 * rate_3_leg1;
-        let t182 = rate_3_leg1 * t181;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t173 * t126 - t156 * t184;
+        let rate_3_leg1 = t159 * t186;
+        let t188 = t6 * rate_3_leg1;
+        let t189 = rate_3_leg1 * t188;
+        let t191 = t2 * rate_3_leg1;
+        let t192 = rate_3_leg1 * t191;
         let minus_g2_vx_leg1 = t18 * t15;
-        let t189 = t145 * t174 - t146 * rate_3_leg1;
-        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
-        let t194 = t193 - t178;
+        let t199 = t155 * t184 - t156 * rate_3_leg1;
+        let t203 = t173 * t71 - t152 * t199 - t126 * rate_3_leg1;
+        let t204 = t203 - t188;
         let minus_g2_vy_leg1 = t74 * t15;
-        let t197 = t189 - t181;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
-        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t201 = 0.0784 * t200;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
-        let t206 = rate_1_leg1 * rate_1_leg1;
-        let t208 = 0.5 * (t10 - 0.1568);
-        let t209 = t206 * t208;
-        let minus_rate_dot_1_leg1 = t15 * (t75 * t179 - t19 * t182 - t201 - t209);
-        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t207 = t199 - t191;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t204 + minus_g2_vy_leg1 * t207;
+        let t210 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t211 = 0.0784 * t210;
+        let rate_1_leg1 = g1_vx_leg1 * t204 + g1_vy_leg1 * t207;
+        let t216 = rate_1_leg1 * rate_1_leg1;
+        let t218 = 0.5 * (t10 - 0.1568);
+        let t219 = t216 * t218;
+        let minus_rate_dot_1_leg1 = t15 * (t75 * t189 - t19 * t192 - t211 - t219);
+        let t222 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
         let g2_vx_leg2 = t30 * t33;
         let g2_vy_leg2 = t82 * t33;
-        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
-        let t222 = rate_2_leg2 * rate_2_leg2;
-        let t223 = 0.0784 * t222;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
-        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t230 = 0.5 * (t25 - 0.1568);
-        let t231 = t228 * t230;
-        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
-        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * t204 + g2_vy_leg2 * t207;
+        let t232 = rate_2_leg2 * rate_2_leg2;
+        let t233 = 0.0784 * t232;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t204 + minus_g1_vy_leg2 * t207;
+        let t238 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t240 = 0.5 * (t25 - 0.1568);
+        let t241 = t238 * t240;
+        let rate_dot_1_leg2 = t33 * (t83 * t189 - t31 * t192 - t233 - t241);
+        let t244 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg3 = t49 * t52;
-        let t241 = t193 + t178;
+        let t251 = t203 + t188;
         let minus_g2_vy_leg3 = t92 * t52;
-        let t244 = t189 + t181;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
-        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t248 = 0.0784 * t247;
-        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
-        let t253 = rate_1_leg3 * rate_1_leg3;
-        let t255 = 0.5 * (t44 - 0.1568);
-        let t256 = t253 * t255;
-        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
-        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t254 = t199 + t191;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t251 + minus_g2_vy_leg3 * t254;
+        let t257 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t258 = 0.0784 * t257;
+        let rate_1_leg3 = g1_vx_leg3 * t251 + g1_vy_leg3 * t254;
+        let t263 = rate_1_leg3 * rate_1_leg3;
+        let t265 = 0.5 * (t44 - 0.1568);
+        let t266 = t263 * t265;
+        let minus_rate_dot_1_leg3 = t52 * (t50 * t192 - t93 * t189 - t258 - t266);
+        let t269 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
         let g2_vx_leg4 = t64 * t67;
         let g2_vy_leg4 = t101 * t67;
-        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
-        let t270 = rate_2_leg4 * rate_2_leg4;
-        let t271 = 0.0784 * t270;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
-        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t278 = 0.5 * (t59 - 0.1568);
-        let t279 = t276 * t278;
-        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
-        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
-            - minus_g1_vx_leg4 * t282;
-        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
-            - minus_g1_vy_leg4 * t282 - t142 * t284;
-        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
-            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
-        let rate_dot_3_leg1 = t149 * t306;
-        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
-        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
-        let t314 = t6 * rate_dot_3_leg1;
-        let t316 = t313 - t314 + t182;
-        let t318 = t2 * rate_dot_3_leg1;
-        let t320 = t309 - t318 - t179;
-        let t323 = t19 * t316 + t75 * t320 + t201;
-        let rate_dot_1_leg1 = t15 * (t323 + t209);
-        let t332 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t336 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t338 = g1_vx_leg3 * t332 - g1_vy_leg3 * t336;
-        ::overact::guard::platform(t338, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t338, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t338, 3.5376915986291904, "kept actuators")?;
-        let t339 = 0.5 / t338;
-        let t340 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t339;
-        let t345 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t339;
+        let rate_2_leg4 = g2_vx_leg4 * t251 + g2_vy_leg4 * t254;
+        let t280 = rate_2_leg4 * rate_2_leg4;
+        let t281 = 0.0784 * t280;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t251 + minus_g1_vy_leg4 * t254;
+        let t286 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t288 = 0.5 * (t59 - 0.1568);
+        let t289 = t286 * t288;
+        let rate_dot_1_leg4 = t67 * (t65 * t192 - t102 * t189 - t281 - t289);
+        let t292 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t294 = g1_vx_leg1 * t222 - minus_g1_vx_leg2 * t244 + g1_vx_leg3 * t269
+            - minus_g1_vx_leg4 * t292;
+        let t304 = g1_vy_leg1 * t222 - minus_g1_vy_leg2 * t244 + g1_vy_leg3 * t269
+            - minus_g1_vy_leg4 * t292 - t152 * t294;
+        let t316 = g1_wz_leg2 * t244 - minus_g1_wz_leg1 * t222 + g1_wz_leg3 * t269
+            - minus_g1_wz_leg4 * t292 - t126 * t294 - t156 * t304;
+        let rate_dot_3_leg1 = t159 * t316;
+        let t319 = t155 * t304 - t156 * rate_dot_3_leg1;
+        let t323 = t71 * t294 - t152 * t319 - t126 * rate_dot_3_leg1;
+        let t325 = t192 - t6 * rate_dot_3_leg1;
+        let t326 = t323 + t325;
+        let t329 = t189 + t2 * rate_dot_3_leg1;
+        let t330 = t319 - t329;
+        let t333 = t19 * t326 + t75 * t330 + t211;
+        let rate_dot_1_leg1 = t15 * (t333 + t219);
+        let t340 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t108;
+        let t345 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t108;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let t354 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t339;
+            * t108;
         let t356 = minus_g2_vy_leg1 * t340 - minus_g2_vx_leg1 * t345 + g2_wz_leg1 * t354;
-        let t361 = t18 * t316 + t74 * t320 + 0.0784 * t206;
-        let minus_rate_dot_2_leg1 = t15 * (t361 + t200 * t208);
+        let t361 = t18 * t326 + t74 * t330 + 0.0784 * t216;
+        let minus_rate_dot_2_leg1 = t15 * (t361 + t210 * t218);
         let t365 = t356 * minus_rate_dot_2_leg1;
-        let t369 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t339;
-        let t374 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t339;
-        let t380 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t339;
+        let t369 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t108;
+        let t374 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t108;
+        let t380 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t108;
         let t382 = minus_g2_vy_leg1 * t369 - minus_g2_vx_leg1 * t374 - g2_wz_leg1 * t380;
         let t383 = t382 * minus_rate_dot_2_leg1;
         let t384 = t354 * rate_dot_3_leg1;
-        let t386 = 9.090909090909092 * (t179 + t318);
-        let t389 = 9.090909090909092 * (t314 - t182);
-        let t394 = c_phi * t313 + s_phi * t309;
-        let t396 = t340 * t386 - t345 * t389 - t354 * t394;
-        let t397 = 9.090909090909092 * t396;
-        let t401 = t345 * t313 - t340 * t309;
-        let t402 = 82.64462809917356 * t401;
-        let t404 = 0.04321428571428571 * (t384 + t397 + t402);
-        let t412 = t369 * t386 - t374 * t389 + t380 * t394;
-        let t413 = 9.090909090909092 * t412;
-        let t414 = t380 * rate_dot_3_leg1;
-        let t418 = t374 * t313 - t369 * t309;
-        let t419 = 82.64462809917356 * t418;
-        let t421 = 0.04321428571428571 * (t413 - t414 + t419);
-        let t425 = 3.5714285714285716 * t323;
-        let t430 = rate_1_leg1 + minus_rate_2_leg1;
-        let t431 = t356 - 1.0;
-        let t436 = minus_rate_2_leg1 + rate_3_leg1;
-        let t437 = t354 - t356;
-        let t439 = t382 + t380;
-        let t444 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2)
-            * t339;
-        let t452 = t31 * t316 + t83 * t320 + t223;
-        let minus_rate_dot_1_leg2 = t33 * (t452 + t231);
+        let t385 = 9.090909090909092 * t325;
+        let t387 = 9.090909090909092 * t329;
+        let t392 = s_phi * t319 + c_phi * t323;
+        let t394 = t345 * t385 + t340 * t387 - t354 * t392;
+        let t395 = 9.090909090909092 * t394;
+        let t399 = t345 * t323 - t340 * t319;
+        let t400 = 82.64462809917356 * t399;
+        let t402 = 0.04321428571428571 * (t384 + t395 + t400);
+        let t410 = t374 * t385 + t369 * t387 + t380 * t392;
+        let t411 = 9.090909090909092 * t410;
+        let t412 = t380 * rate_dot_3_leg1;
+        let t416 = t374 * t323 - t369 * t319;
+        let t417 = 82.64462809917356 * t416;
+        let t419 = 0.04321428571428571 * (t411 - t412 + t417);
+        let t423 = 3.5714285714285716 * t333;
+        let t428 = rate_1_leg1 + minus_rate_2_leg1;
+        let t429 = t356 - 1.0;
+        let t434 = minus_rate_2_leg1 + rate_3_leg1;
+        let t435 = t354 - t356;
+        let t437 = t382 + t380;
+        let t446 = t31 * t326 + t83 * t330 + t233;
+        let minus_rate_dot_1_leg2 = t33 * (t446 + t241);
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t463 = g2_vx_leg2 * t345 - g2_vy_leg2 * t340 - minus_g2_wz_leg2 * t354;
-        let t468 = t30 * t316 + t82 * t320 + 0.0784 * t228;
-        let rate_dot_2_leg2 = t33 * (t468 + t222 * t230);
-        let t472 = t463 * rate_dot_2_leg2;
-        let t477 = g2_vx_leg2 * t374 - g2_vy_leg2 * t369 + minus_g2_wz_leg2 * t380;
-        let t478 = t477 * rate_dot_2_leg2;
-        let t484 = 3.5714285714285716 * t452;
-        let t490 = minus_rate_1_leg2 + rate_2_leg2;
-        let t492 = t477 - 1.0;
-        let t496 = rate_3_leg1 - rate_2_leg2;
-        let t497 = t354 - t463;
-        let t499 = t477 + t380;
-        let t506 = t313 + t314 - t182;
-        let t509 = t309 + t318 + t179;
-        let t512 = t50 * t506 + t93 * t509 + t248;
-        let rate_dot_1_leg3 = t52 * (t512 + t256);
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t523 = minus_g2_vy_leg3 * t340 - minus_g2_vx_leg3 * t345
+        let t457 = g2_vx_leg2 * t345 - g2_vy_leg2 * t340 - minus_g2_wz_leg2 * t354;
+        let t462 = t30 * t326 + t82 * t330 + 0.0784 * t238;
+        let rate_dot_2_leg2 = t33 * (t462 + t232 * t240);
+        let t466 = t457 * rate_dot_2_leg2;
+        let t471 = g2_vx_leg2 * t374 - g2_vy_leg2 * t369 + minus_g2_wz_leg2 * t380;
+        let t472 = t471 * rate_dot_2_leg2;
+        let t478 = 3.5714285714285716 * t446;
+        let t484 = minus_rate_1_leg2 + rate_2_leg2;
+        let t486 = t471 - 1.0;
+        let t490 = rate_3_leg1 - rate_2_leg2;
+        let t491 = t354 - t457;
+        let t493 = t471 + t380;
+        let t499 = t323 - t325;
+        let t501 = t319 + t329;
+        let t504 = t50 * t499 + t93 * t501 + t258;
+        let rate_dot_1_leg3 = t52 * (t504 + t266);
+        let t514 = 2.0 * (minus_g2_vy_leg3 * t110 + minus_g2_vx_leg3 * t112);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * t514;
+        let t517 = minus_g2_vy_leg3 * t340 - minus_g2_vx_leg3 * t345
             - minus_g2_wz_leg3 * t354;
-        let t528 = t49 * t506 + t92 * t509 + 0.0784 * t253;
-        let minus_rate_dot_2_leg3 = t52 * (t528 + t247 * t255);
-        let t532 = t523 * minus_rate_dot_2_leg3;
-        let t537 = minus_g2_vy_leg3 * t369 - minus_g2_vx_leg3 * t374
+        let t522 = t49 * t499 + t92 * t501 + 0.0784 * t263;
+        let minus_rate_dot_2_leg3 = t52 * (t522 + t257 * t265);
+        let t526 = t517 * minus_rate_dot_2_leg3;
+        let t531 = minus_g2_vy_leg3 * t369 - minus_g2_vx_leg3 * t374
             + minus_g2_wz_leg3 * t380;
-        let t538 = t537 * minus_rate_dot_2_leg3;
-        let t539 = t336 * t339;
-        let t541 = t332 * t339;
-        let t543 = minus_g2_vy_leg3 * t539 - minus_g2_vx_leg3 * t541;
-        let t544 = 2.0 * t543;
-        let t545 = t544 * minus_rate_dot_2_leg3;
-        let t548 = 0.04321428571428571 * (t384 - t397 + t402);
-        let t553 = 0.04321428571428571 * (t419 - (t414 + t413));
-        let t556 = t444 * rate_dot_3_leg1;
-        let t558 = t444 * t394;
-        let t559 = 0.11 * t556 + t558;
-        let t560 = 0.7857142857142857 * t559;
-        let t564 = 3.5714285714285716 * t512;
-        let t572 = rate_1_leg3 + minus_rate_2_leg3;
-        let t575 = t544 - 1.0;
-        let t580 = minus_rate_2_leg3 + rate_3_leg1;
-        let t581 = t354 - t523;
-        let t583 = t537 + t380;
-        let t585 = t444 - t544;
-        let t594 = minus_g1_vy_leg4 * t340 - minus_g1_vx_leg4 * t345
+        let t532 = t531 * minus_rate_dot_2_leg3;
+        let t533 = t514 * minus_rate_dot_2_leg3;
+        let t536 = 0.04321428571428571 * (t384 - t395 + t400);
+        let t541 = 0.04321428571428571 * (t417 - (t412 + t411));
+        let t544 = t109 * rate_dot_3_leg1;
+        let t546 = t109 * t392;
+        let t547 = 0.11 * t544 + t546;
+        let t548 = 0.7857142857142857 * t547;
+        let t552 = 3.5714285714285716 * t504;
+        let t559 = rate_1_leg3 + minus_rate_2_leg3;
+        let t562 = t514 + 1.0;
+        let t567 = minus_rate_2_leg3 + rate_3_leg1;
+        let t568 = t354 - t517;
+        let t570 = t531 + t380;
+        let t572 = t109 + t514;
+        let t581 = minus_g1_vy_leg4 * t340 - minus_g1_vx_leg4 * t345
             - minus_g1_wz_leg4 * t354;
-        let t598 = t65 * t506 + t102 * t509 + t271;
-        let minus_rate_dot_1_leg4 = t67 * (t598 + t279);
-        let t601 = t594 * minus_rate_dot_1_leg4;
-        let t606 = minus_g1_vy_leg4 * t369 - minus_g1_vx_leg4 * t374
+        let t585 = t65 * t499 + t102 * t501 + t281;
+        let minus_rate_dot_1_leg4 = t67 * (t585 + t289);
+        let t588 = t581 * minus_rate_dot_1_leg4;
+        let t593 = minus_g1_vy_leg4 * t369 - minus_g1_vx_leg4 * t374
             + minus_g1_wz_leg4 * t380;
-        let t607 = t606 * minus_rate_dot_1_leg4;
-        let t610 = minus_g1_vy_leg4 * t539 - minus_g1_vx_leg4 * t541;
-        let t611 = 2.0 * t610;
-        let t612 = t611 * minus_rate_dot_1_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t626 = g2_vx_leg4 * t345 - g2_vy_leg4 * t340 + g2_wz_leg4 * t354;
-        let t631 = t64 * t506 + t101 * t509 + 0.0784 * t276;
-        let rate_dot_2_leg4 = t67 * (t631 + t270 * t278);
-        let t635 = t626 * rate_dot_2_leg4;
-        let t640 = g2_vx_leg4 * t374 - g2_vy_leg4 * t369 - g2_wz_leg4 * t380;
-        let t641 = t640 * rate_dot_2_leg4;
-        let t644 = g2_vx_leg4 * t541 - g2_vy_leg4 * t539;
-        let t645 = 2.0 * t644;
-        let t646 = t645 * rate_dot_2_leg4;
-        let t656 = 3.5714285714285716 * t631;
-        let t658 = 3.5714285714285716 * t598;
-        let t671 = minus_rate_1_leg4 + rate_2_leg4;
-        let t672 = t626 - t594;
-        let t674 = t640 - t606;
-        let t677 = 2.0 * (t644 - t610);
-        let t682 = rate_3_leg1 - rate_2_leg4;
-        let t683 = t354 - t626;
-        let t685 = t640 + t380;
-        let t687 = t444 - t645;
-        let t694 = c_phi * t309 - s_phi * t313;
+        let t594 = t593 * minus_rate_dot_1_leg4;
+        let t595 = t115 * minus_rate_dot_1_leg4;
+        let t607 = g2_vx_leg4 * t112 + g2_vy_leg4 * t110;
+        let t608 = 2.0 * t607;
+        let g2_wz_leg4 = g1_wz_leg3 * t608;
+        let t611 = g2_vx_leg4 * t345 - g2_vy_leg4 * t340 + g2_wz_leg4 * t354;
+        let t616 = t64 * t499 + t101 * t501 + 0.0784 * t286;
+        let rate_dot_2_leg4 = t67 * (t616 + t280 * t288);
+        let t620 = t611 * rate_dot_2_leg4;
+        let t625 = g2_vx_leg4 * t374 - g2_vy_leg4 * t369 - g2_wz_leg4 * t380;
+        let t626 = t625 * rate_dot_2_leg4;
+        let t627 = t608 * rate_dot_2_leg4;
+        let t637 = 3.5714285714285716 * t616;
+        let t639 = 3.5714285714285716 * t585;
+        let t652 = minus_rate_1_leg4 + rate_2_leg4;
+        let t653 = t611 - t581;
+        let t655 = t625 - t593;
+        let t657 = t115 + t608;
+        let t662 = rate_3_leg1 - rate_2_leg4;
+        let t663 = t354 - t611;
+        let t665 = t625 + t380;
+        let t667 = t109 - t608;
+        let t677 = c_phi * t319 - s_phi * t323;
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t365, t404 - 0.28 * (rate_dot_1_leg1 - t365),
-                3.5714285714285716 * t361 - t356 * t425, 0.0784 * rate_dot_1_leg1, -(t430 * t431),
-                -::overact::math::signed(t431, t430), t431, t436 * t437,
-                ::overact::math::signed(t437, t436), t437, 0.0, 0.0, 0.0, 0.0, 0.0, t472,
-                t404 - 0.28 * t472, -(t463 * t484), 0.0, t463 * t490,
-                ::overact::math::signed(t463, t490), t463, t496 * t497,
-                ::overact::math::signed(t497, t496), t497, 0.0, 0.0, 0.0, 0.0, 0.0, -t532,
-                t548 + 0.28 * t532, -(t523 * t564), 0.0, -(t523 * t572),
-                -::overact::math::signed(t523, t572), t523, t580 * t581,
-                ::overact::math::signed(t581, t580), t581, -t601, -t601,
-                -(t594 * minus_rate_1_leg4), -::overact::math::signed(t594, minus_rate_1_leg4),
-                t594, t635, t548 - 0.28 * (t635 - t601), t594 * t656 - t626 * t658,
-                -(0.0784 * t601), t671 * t672, ::overact::math::signed(t672, t671), t672,
-                t682 * t683, ::overact::math::signed(t683, t682), t683, t384,
-                t354 * t694 - (t345 * t386 + t340 * t389), t396, t401,
+                1.0, -t365, t402 - 0.28 * (rate_dot_1_leg1 - t365),
+                3.5714285714285716 * t361 - t356 * t423, 0.0784 * rate_dot_1_leg1, -(t428 * t429),
+                -::overact::math::signed(t429, t428), t429, t434 * t435,
+                ::overact::math::signed(t435, t434), t435, 0.0, 0.0, 0.0, 0.0, 0.0, t466,
+                t402 - 0.28 * t466, -(t457 * t478), 0.0, t457 * t484,
+                ::overact::math::signed(t457, t484), t457, t490 * t491,
+                ::overact::math::signed(t491, t490), t491, 0.0, 0.0, 0.0, 0.0, 0.0, -t526,
+                t536 + 0.28 * t526, -(t517 * t552), 0.0, -(t517 * t559),
+                -::overact::math::signed(t517, t559), t517, t567 * t568,
+                ::overact::math::signed(t568, t567), t568, -t588, -t588,
+                -(t581 * minus_rate_1_leg4), -::overact::math::signed(t581, minus_rate_1_leg4),
+                t581, t620, t536 - 0.28 * (t620 - t588), t581 * t637 - t611 * t639,
+                -(0.0784 * t588), t652 * t653, ::overact::math::signed(t653, t652), t653,
+                t662 * t663, ::overact::math::signed(t663, t662), t663, t384,
+                t340 * t385 - t345 * t387 + t354 * t677, t394, t399,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t383, t421 + 0.28 * t383, -(t382 * t425), 0.0,
-                -(t382 * t430), -::overact::math::signed(t382, t430), t382, -(t436 * t439),
-                -::overact::math::signed(t439, t436), -t439, -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t383, t419 + 0.28 * t383, -(t382 * t423), 0.0,
+                -(t382 * t428), -::overact::math::signed(t382, t428), t382, -(t434 * t437),
+                -::overact::math::signed(t437, t434), -t437, -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, t478,
-                t421 - 0.28 * (t478 - minus_rate_dot_1_leg2),
-                3.5714285714285716 * t468 - t477 * t484, -(0.0784 * minus_rate_dot_1_leg2),
-                t490 * t492, ::overact::math::signed(t492, t490), t492, -(t496 * t499),
-                -::overact::math::signed(t499, t496), -t499, 0.0, 0.0, 0.0, 0.0, 0.0, -t538,
-                t553 + 0.28 * t538, -(t537 * t564), 0.0, -(t537 * t572),
-                -::overact::math::signed(t537, t572), t537, -(t580 * t583),
-                -::overact::math::signed(t583, t580), -t583, -t607, -t607,
-                -(t606 * minus_rate_1_leg4), -::overact::math::signed(t606, minus_rate_1_leg4),
-                t606, t641, t553 - 0.28 * (t641 - t607), t606 * t656 - t640 * t658,
-                -(0.0784 * t607), t671 * t674, ::overact::math::signed(t674, t671), t674,
-                -(t682 * t685), -::overact::math::signed(t685, t682), -t685, -t414,
-                -(t374 * t386 + t369 * t389 + t380 * t694), t412, t418,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, t472,
+                t419 - 0.28 * (t472 - minus_rate_dot_1_leg2),
+                3.5714285714285716 * t462 - t471 * t478, -(0.0784 * minus_rate_dot_1_leg2),
+                t484 * t486, ::overact::math::signed(t486, t484), t486, -(t490 * t493),
+                -::overact::math::signed(t493, t490), -t493, 0.0, 0.0, 0.0, 0.0, 0.0, -t532,
+                t541 + 0.28 * t532, -(t531 * t552), 0.0, -(t531 * t559),
+                -::overact::math::signed(t531, t559), t531, -(t567 * t570),
+                -::overact::math::signed(t570, t567), -t570, -t594, -t594,
+                -(t593 * minus_rate_1_leg4), -::overact::math::signed(t593, minus_rate_1_leg4),
+                t593, t626, t541 - 0.28 * (t626 - t594), t593 * t637 - t625 * t639,
+                -(0.0784 * t594), t652 * t655, ::overact::math::signed(t655, t652), t655,
+                -(t662 * t665), -::overact::math::signed(t665, t662), -t665, -t412,
+                t369 * t385 - t374 * t387 - t380 * t677, t410, t416,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t444 * t436,
-                ::overact::math::signed(t444, t436), t444, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t444 * t496, ::overact::math::signed(t444, t496), t444,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t109 * t434,
+                ::overact::math::signed(t109, t434), t109, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t109 * t490, ::overact::math::signed(t109, t490), t109,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, -t545, t560 - 0.28 * (rate_dot_1_leg3 - t545),
-                3.5714285714285716 * t528 - 7.142857142857143 * (t543 * t512),
-                0.0784 * rate_dot_1_leg3, -(t572 * t575), -::overact::math::signed(t575, t572),
-                t575, t580 * t585, ::overact::math::signed(t585, t580), t585, -t612, -t612,
-                -(t611 * minus_rate_1_leg4), -::overact::math::signed(t611, minus_rate_1_leg4),
-                t611, t646, t560 - 0.28 * (t646 - t612),
-                7.142857142857143 * (t610 * t631 - t644 * t598), -(0.0784 * t612), t671 * t677,
-                ::overact::math::signed(t677, t671), t677, t682 * t687,
-                ::overact::math::signed(t687, t682), t687, t556,
-                t444 * t694 - (t541 * t386 + t539 * t389), -t559, 0.11 * t558,
+                1.0, t533, t548 - 0.28 * (rate_dot_1_leg3 + t533),
+                3.5714285714285716 * t522 + t552 * t514, 0.0784 * rate_dot_1_leg3, t559 * t562,
+                ::overact::math::signed(t562, t559), -t562, t567 * t572,
+                ::overact::math::signed(t572, t567), t572, t595, t595, t115 * minus_rate_1_leg4,
+                ::overact::math::signed(t115, minus_rate_1_leg4), -t115, t627,
+                t548 - 0.28 * (t627 + t595), -(7.142857142857143 * (t114 * t616 + t607 * t585)),
+                0.0784 * t595, t652 * t657, ::overact::math::signed(t657, t652), t657, t662 * t667,
+                ::overact::math::signed(t667, t662), t667, t544,
+                t109 * t677 - (t110 * t385 + t112 * t387), -t547, 0.11 * t546,
             ],
         ])
     }
@@ -3295,7 +3270,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 368 operations (130 additions, 230 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 271 intermediates.
+    /// 363 operations (125 additions, 230 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 266 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3307,17 +3282,16 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t3 = t2 * twist[2];
-        let t4 = twist[2] * t3;
         let t5 = 0.11 * s_phi;
-        let t6 = t5 * acceleration[2];
-        let t8 = 9.090909090909092 * (t4 + t6);
-        let t9 = t2 * acceleration[2];
-        let t10 = t5 * twist[2];
-        let t11 = twist[2] * t10;
-        let t13 = 9.090909090909092 * (t9 - t11);
+        let t7 = twist[2] * t3 + t5 * acceleration[2];
+        let t8 = 9.090909090909092 * t7;
+        let t9 = t5 * twist[2];
+        let t12 = twist[2] * t9 - t2 * acceleration[2];
+        let t13 = 9.090909090909092 * t12;
         let t20 = pose[0] - t5;
         let t21 = t20 - 0.3950502153918333;
-        let t24 = pose[1] + t2 - 0.10970563941232059;
+        let t23 = t2 + -0.10970563941232059;
+        let t24 = pose[1] + t23;
         let t26 = t24 * t24;
         let t27 = t21 * t21 + t26;
         let t29 = 0.0784 / t27 - 0.25;
@@ -3329,151 +3303,151 @@ impl DualV {
         ::overact::guard::leg(t34, 0.07839913810297301, "leg1")?;
         let t35 = 1.0 / t34;
         let g1_vx_leg1 = t33 * t35;
-        let t38 = acceleration[0] - t9 + t11;
-        let t40 = 0.5 * t24;
-        let t42 = t40 - t21 * t30;
-        let t43 = t24 - t42;
-        let t45 = acceleration[1] - t6 - t4;
+        let t37 = t12 + acceleration[0];
+        let t39 = 0.5 * t24;
+        let t41 = t39 - t21 * t30;
+        let t42 = t24 - t41;
+        let t43 = acceleration[1] - t7;
         let minus_g2_vx_leg1 = t32 * t35;
-        let t49 = twist[0] - t3;
-        let minus_g2_vy_leg1 = t42 * t35;
-        let t52 = twist[1] - t10;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t49 + minus_g2_vy_leg1 * t52;
-        let t55 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t57 = t33 * t38 + t43 * t45 + 0.0784 * t55;
-        let g1_vy_leg1 = t43 * t35;
-        let rate_1_leg1 = g1_vx_leg1 * t49 + g1_vy_leg1 * t52;
-        let t62 = rate_1_leg1 * rate_1_leg1;
-        let t64 = 0.5 * (t27 - 0.1568);
-        let rate_dot_1_leg1 = t35 * (t57 + t62 * t64);
+        let t47 = twist[0] - t3;
+        let minus_g2_vy_leg1 = t41 * t35;
+        let t50 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t47 + minus_g2_vy_leg1 * t50;
+        let t53 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t55 = t33 * t37 + t42 * t43 + 0.0784 * t53;
+        let g1_vy_leg1 = t42 * t35;
+        let rate_1_leg1 = g1_vx_leg1 * t47 + g1_vy_leg1 * t50;
+        let t60 = rate_1_leg1 * rate_1_leg1;
+        let t62 = 0.5 * (t27 - 0.1568);
+        let rate_dot_1_leg1 = t35 * (t55 + t60 * t62);
         let minus_g1_wz_leg1 = t5 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t74 = t20 + 0.3950502153918333;
-        let t77 = t74 * t74 + t26;
-        let t79 = 0.0784 / t77 - 0.25;
-        ::overact::guard::reach(t79, "leg2")?;
-        let t80 = ::overact::math::sqrt(t79);
-        let t82 = 0.5 * t74 - t24 * t80;
-        let t83 = t74 - t82;
-        let t84 = t77 * t80;
-        ::overact::guard::leg(t84, 0.07839913810297301, "leg2")?;
-        let t85 = 1.0 / t84;
-        let minus_g1_vx_leg2 = t83 * t85;
-        let t89 = t40 + t74 * t80;
-        let t90 = t24 - t89;
-        let g2_vx_leg2 = t82 * t85;
-        let g2_vy_leg2 = t89 * t85;
-        let rate_2_leg2 = g2_vx_leg2 * t49 + g2_vy_leg2 * t52;
-        let t98 = rate_2_leg2 * rate_2_leg2;
-        let t100 = t83 * t38 + t90 * t45 + 0.0784 * t98;
-        let minus_g1_vy_leg2 = t90 * t85;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t49 + minus_g1_vy_leg2 * t52;
-        let t105 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t107 = 0.5 * (t77 - 0.1568);
-        let minus_rate_dot_1_leg2 = t85 * (t100 + t105 * t107);
+        let t72 = t20 + 0.3950502153918333;
+        let t75 = t72 * t72 + t26;
+        let t77 = 0.0784 / t75 - 0.25;
+        ::overact::guard::reach(t77, "leg2")?;
+        let t78 = ::overact::math::sqrt(t77);
+        let t80 = 0.5 * t72 - t24 * t78;
+        let t81 = t72 - t80;
+        let t82 = t75 * t78;
+        ::overact::guard::leg(t82, 0.07839913810297301, "leg2")?;
+        let t83 = 1.0 / t82;
+        let minus_g1_vx_leg2 = t81 * t83;
+        let t87 = t39 + t72 * t78;
+        let t88 = t24 - t87;
+        let g2_vx_leg2 = t80 * t83;
+        let g2_vy_leg2 = t87 * t83;
+        let rate_2_leg2 = g2_vx_leg2 * t47 + g2_vy_leg2 * t50;
+        let t96 = rate_2_leg2 * rate_2_leg2;
+        let t98 = t81 * t37 + t88 * t43 + 0.0784 * t96;
+        let minus_g1_vy_leg2 = t88 * t83;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t47 + minus_g1_vy_leg2 * t50;
+        let t103 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t105 = 0.5 * (t75 - 0.1568);
+        let minus_rate_dot_1_leg2 = t83 * (t98 + t103 * t105);
         let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let t117 = pose[0] + t5;
-        let t118 = t117 + 0.3950502153918333;
-        let t121 = pose[1] - t2 + 0.10970563941232059;
-        let t123 = t121 * t121;
-        let t124 = t118 * t118 + t123;
-        let t126 = 0.0784 / t124 - 0.25;
-        ::overact::guard::reach(t126, "leg3")?;
-        let t127 = ::overact::math::sqrt(t126);
-        let t129 = 0.5 * t118 + t121 * t127;
-        let t130 = t118 - t129;
-        let t131 = t124 * t127;
-        ::overact::guard::leg(t131, 0.07839913810297301, "leg3")?;
-        let t132 = 1.0 / t131;
-        let g1_vx_leg3 = t130 * t132;
-        let t135 = acceleration[0] + t9 - t11;
-        let t137 = 0.5 * t121;
-        let t139 = t137 - t118 * t127;
-        let t140 = t121 - t139;
-        let t142 = acceleration[1] + t6 + t4;
-        let minus_g2_vx_leg3 = t129 * t132;
-        let t146 = twist[0] + t3;
-        let minus_g2_vy_leg3 = t139 * t132;
-        let t149 = twist[1] + t10;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t146 + minus_g2_vy_leg3 * t149;
-        let t152 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t154 = t130 * t135 + t140 * t142 + 0.0784 * t152;
-        let g1_vy_leg3 = t140 * t132;
-        let rate_1_leg3 = g1_vx_leg3 * t146 + g1_vy_leg3 * t149;
-        let t159 = rate_1_leg3 * rate_1_leg3;
-        let t161 = 0.5 * (t124 - 0.1568);
-        let rate_dot_1_leg3 = t132 * (t154 + t159 * t161);
+        let t115 = pose[0] + t5;
+        let t116 = t115 + 0.3950502153918333;
+        let t118 = pose[1] - t23;
+        let t120 = t118 * t118;
+        let t121 = t116 * t116 + t120;
+        let t123 = 0.0784 / t121 - 0.25;
+        ::overact::guard::reach(t123, "leg3")?;
+        let t124 = ::overact::math::sqrt(t123);
+        let t126 = 0.5 * t116 + t118 * t124;
+        let t127 = t116 - t126;
+        let t128 = t121 * t124;
+        ::overact::guard::leg(t128, 0.07839913810297301, "leg3")?;
+        let t129 = 1.0 / t128;
+        let g1_vx_leg3 = t127 * t129;
+        let t131 = acceleration[0] - t12;
+        let t133 = 0.5 * t118;
+        let t135 = t133 - t116 * t124;
+        let t136 = t118 - t135;
+        let t137 = t7 + acceleration[1];
+        let minus_g2_vx_leg3 = t126 * t129;
+        let t141 = twist[0] + t3;
+        let minus_g2_vy_leg3 = t135 * t129;
+        let t144 = twist[1] + t9;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t141 + minus_g2_vy_leg3 * t144;
+        let t147 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t149 = t127 * t131 + t136 * t137 + 0.0784 * t147;
+        let g1_vy_leg3 = t136 * t129;
+        let rate_1_leg3 = g1_vx_leg3 * t141 + g1_vy_leg3 * t144;
+        let t154 = rate_1_leg3 * rate_1_leg3;
+        let t156 = 0.5 * (t121 - 0.1568);
+        let rate_dot_1_leg3 = t129 * (t149 + t154 * t156);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t171 = t117 - 0.3950502153918333;
-        let t174 = t171 * t171 + t123;
-        let t176 = 0.0784 / t174 - 0.25;
-        ::overact::guard::reach(t176, "leg4")?;
-        let t177 = ::overact::math::sqrt(t176);
-        let t179 = 0.5 * t171 - t121 * t177;
-        let t180 = t171 - t179;
-        let t181 = t174 * t177;
-        ::overact::guard::leg(t181, 0.07839913810297301, "leg4")?;
-        let t182 = 1.0 / t181;
-        let minus_g1_vx_leg4 = t180 * t182;
-        let t186 = t137 + t171 * t177;
-        let t187 = t121 - t186;
-        let g2_vx_leg4 = t179 * t182;
-        let g2_vy_leg4 = t186 * t182;
-        let rate_2_leg4 = g2_vx_leg4 * t146 + g2_vy_leg4 * t149;
-        let t195 = rate_2_leg4 * rate_2_leg4;
-        let t197 = t180 * t135 + t187 * t142 + 0.0784 * t195;
-        let minus_g1_vy_leg4 = t187 * t182;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t146 + minus_g1_vy_leg4 * t149;
-        let t202 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t204 = 0.5 * (t174 - 0.1568);
-        let minus_rate_dot_1_leg4 = t182 * (t197 + t202 * t204);
+        let t166 = t115 - 0.3950502153918333;
+        let t169 = t166 * t166 + t120;
+        let t171 = 0.0784 / t169 - 0.25;
+        ::overact::guard::reach(t171, "leg4")?;
+        let t172 = ::overact::math::sqrt(t171);
+        let t174 = 0.5 * t166 - t118 * t172;
+        let t175 = t166 - t174;
+        let t176 = t169 * t172;
+        ::overact::guard::leg(t176, 0.07839913810297301, "leg4")?;
+        let t177 = 1.0 / t176;
+        let minus_g1_vx_leg4 = t175 * t177;
+        let t181 = t133 + t166 * t172;
+        let t182 = t118 - t181;
+        let g2_vx_leg4 = t174 * t177;
+        let g2_vy_leg4 = t181 * t177;
+        let rate_2_leg4 = g2_vx_leg4 * t141 + g2_vy_leg4 * t144;
+        let t190 = rate_2_leg4 * rate_2_leg4;
+        let t192 = t175 * t131 + t182 * t137 + 0.0784 * t190;
+        let minus_g1_vy_leg4 = t182 * t177;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t141 + minus_g1_vy_leg4 * t144;
+        let t197 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t199 = 0.5 * (t169 - 0.1568);
+        let minus_rate_dot_1_leg4 = t177 * (t192 + t197 * t199);
         let minus_g1_wz_leg4 = t5 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t242 = t32 * t38 + t42 * t45 + 0.0784 * t62;
-        let minus_rate_dot_2_leg1 = t35 * (t242 + t55 * t64);
+        let t237 = t32 * t37 + t41 * t43 + 0.0784 * t60;
+        let minus_rate_dot_2_leg1 = t35 * (t237 + t53 * t62);
         let g2_wz_leg1 = t5 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t256 = t82 * t38 + t89 * t45 + 0.0784 * t105;
-        let rate_dot_2_leg2 = t85 * (t256 + t98 * t107);
+        let t251 = t80 * t37 + t87 * t43 + 0.0784 * t103;
+        let rate_dot_2_leg2 = t83 * (t251 + t96 * t105);
         let minus_g2_wz_leg2 = t5 * g2_vy_leg2 + t2 * g2_vx_leg2;
-        let t270 = t129 * t135 + t139 * t142 + 0.0784 * t159;
-        let minus_rate_dot_2_leg3 = t132 * (t270 + t152 * t161);
+        let t265 = t126 * t131 + t135 * t137 + 0.0784 * t154;
+        let minus_rate_dot_2_leg3 = t129 * (t265 + t147 * t156);
         let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t284 = t179 * t135 + t186 * t142 + 0.0784 * t202;
-        let rate_dot_2_leg4 = t182 * (t284 + t195 * t204);
+        let t279 = t174 * t131 + t181 * t137 + 0.0784 * t197;
+        let rate_dot_2_leg4 = t177 * (t279 + t190 * t199);
         let g2_wz_leg4 = t5 * g2_vy_leg4 + t2 * g2_vx_leg4;
-        let t294 = 3.5714285714285716 * t242;
-        let t296 = 3.5714285714285716 * t57;
-        let t305 = 3.5714285714285716 * t256;
-        let t307 = 3.5714285714285716 * t100;
-        let t316 = 3.5714285714285716 * t270;
-        let t318 = 3.5714285714285716 * t154;
-        let t327 = 3.5714285714285716 * t284;
-        let t329 = 3.5714285714285716 * t197;
-        let t338 = rate_1_leg1 + minus_rate_2_leg1;
-        let t339 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t341 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t343 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t345 = minus_rate_1_leg2 + rate_2_leg2;
-        let t346 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t348 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t350 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t352 = rate_1_leg3 + minus_rate_2_leg3;
-        let t353 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t355 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t357 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t359 = minus_rate_1_leg4 + rate_2_leg4;
-        let t360 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t362 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t364 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t378 = minus_rate_2_leg1 + twist[2];
-        let t381 = 1.0 - g2_wz_leg1;
-        let t383 = twist[2] - rate_2_leg2;
-        let t386 = minus_g2_wz_leg2 + 1.0;
-        let t388 = minus_rate_2_leg3 + twist[2];
-        let t391 = minus_g2_wz_leg3 + 1.0;
-        let t393 = twist[2] - rate_2_leg4;
-        let t396 = 1.0 - g2_wz_leg4;
+        let t289 = 3.5714285714285716 * t237;
+        let t291 = 3.5714285714285716 * t55;
+        let t300 = 3.5714285714285716 * t251;
+        let t302 = 3.5714285714285716 * t98;
+        let t311 = 3.5714285714285716 * t265;
+        let t313 = 3.5714285714285716 * t149;
+        let t322 = 3.5714285714285716 * t279;
+        let t324 = 3.5714285714285716 * t192;
+        let t333 = rate_1_leg1 + minus_rate_2_leg1;
+        let t334 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t336 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t338 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t340 = minus_rate_1_leg2 + rate_2_leg2;
+        let t341 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t343 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t345 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t347 = rate_1_leg3 + minus_rate_2_leg3;
+        let t348 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t350 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t352 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t354 = minus_rate_1_leg4 + rate_2_leg4;
+        let t355 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t357 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t359 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t373 = minus_rate_2_leg1 + twist[2];
+        let t376 = 1.0 - g2_wz_leg1;
+        let t378 = twist[2] - rate_2_leg2;
+        let t381 = minus_g2_wz_leg2 + 1.0;
+        let t383 = minus_rate_2_leg3 + twist[2];
+        let t386 = minus_g2_wz_leg3 + 1.0;
+        let t388 = twist[2] - rate_2_leg4;
+        let t391 = 1.0 - g2_wz_leg4;
         Ok([
             [
-                0.0, -t8, -t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -3485,21 +3459,21 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t294 + minus_g2_vx_leg1 * t296,
-                -(minus_g1_vx_leg2 * t305 + g2_vx_leg2 * t307),
-                g1_vx_leg3 * t316 + minus_g2_vx_leg3 * t318,
-                -(minus_g1_vx_leg4 * t327 + g2_vx_leg4 * t329), t338 * t339, t345 * t346,
-                t352 * t353, t359 * t360, ::overact::math::signed(t339, t338),
-                ::overact::math::signed(t346, t345), ::overact::math::signed(t353, t352),
-                ::overact::math::signed(t360, t359), -t339, t346, -t353, t360,
-                minus_g2_vx_leg1 * t378, -(g2_vx_leg2 * t383), minus_g2_vx_leg3 * t388,
-                -(g2_vx_leg4 * t393), ::overact::math::signed(minus_g2_vx_leg1, t378),
-                -::overact::math::signed(g2_vx_leg2, t383),
-                ::overact::math::signed(minus_g2_vx_leg3, t388),
-                -::overact::math::signed(g2_vx_leg4, t393), minus_g2_vx_leg1,
+                g1_vx_leg1 * t289 + minus_g2_vx_leg1 * t291,
+                -(minus_g1_vx_leg2 * t300 + g2_vx_leg2 * t302),
+                g1_vx_leg3 * t311 + minus_g2_vx_leg3 * t313,
+                -(minus_g1_vx_leg4 * t322 + g2_vx_leg4 * t324), t333 * t334, t340 * t341,
+                t347 * t348, t354 * t355, ::overact::math::signed(t334, t333),
+                ::overact::math::signed(t341, t340), ::overact::math::signed(t348, t347),
+                ::overact::math::signed(t355, t354), -t334, t341, -t348, t355,
+                minus_g2_vx_leg1 * t373, -(g2_vx_leg2 * t378), minus_g2_vx_leg3 * t383,
+                -(g2_vx_leg4 * t388), ::overact::math::signed(minus_g2_vx_leg1, t373),
+                -::overact::math::signed(g2_vx_leg2, t378),
+                ::overact::math::signed(minus_g2_vx_leg3, t383),
+                -::overact::math::signed(g2_vx_leg4, t388), minus_g2_vx_leg1,
             ],
             [
-                0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
                 minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
@@ -3511,22 +3485,22 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t294 + minus_g2_vy_leg1 * t296,
-                -(minus_g1_vy_leg2 * t305 + g2_vy_leg2 * t307),
-                g1_vy_leg3 * t316 + minus_g2_vy_leg3 * t318,
-                -(minus_g1_vy_leg4 * t327 + g2_vy_leg4 * t329), t338 * t341, t345 * t348,
-                t352 * t355, t359 * t362, ::overact::math::signed(t341, t338),
-                ::overact::math::signed(t348, t345), ::overact::math::signed(t355, t352),
-                ::overact::math::signed(t362, t359), -t341, t348, -t355, t362,
-                minus_g2_vy_leg1 * t378, -(g2_vy_leg2 * t383), minus_g2_vy_leg3 * t388,
-                -(g2_vy_leg4 * t393), ::overact::math::signed(minus_g2_vy_leg1, t378),
-                -::overact::math::signed(g2_vy_leg2, t383),
-                ::overact::math::signed(minus_g2_vy_leg3, t388),
-                -::overact::math::signed(g2_vy_leg4, t393), minus_g2_vy_leg1,
+                g1_vy_leg1 * t289 + minus_g2_vy_leg1 * t291,
+                -(minus_g1_vy_leg2 * t300 + g2_vy_leg2 * t302),
+                g1_vy_leg3 * t311 + minus_g2_vy_leg3 * t313,
+                -(minus_g1_vy_leg4 * t322 + g2_vy_leg4 * t324), t333 * t336, t340 * t343,
+                t347 * t350, t354 * t357, ::overact::math::signed(t336, t333),
+                ::overact::math::signed(t343, t340), ::overact::math::signed(t350, t347),
+                ::overact::math::signed(t357, t354), -t336, t343, -t350, t357,
+                minus_g2_vy_leg1 * t373, -(g2_vy_leg2 * t378), minus_g2_vy_leg3 * t383,
+                -(g2_vy_leg4 * t388), ::overact::math::signed(minus_g2_vy_leg1, t373),
+                -::overact::math::signed(g2_vy_leg2, t378),
+                ::overact::math::signed(minus_g2_vy_leg3, t383),
+                -::overact::math::signed(g2_vy_leg4, t388), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3537,16 +3511,16 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t294 + g2_wz_leg1 * t296),
-                g1_wz_leg2 * t305 + minus_g2_wz_leg2 * t307,
-                g1_wz_leg3 * t316 + minus_g2_wz_leg3 * t318,
-                -(minus_g1_wz_leg4 * t327 + g2_wz_leg4 * t329), -(t338 * t343), -(t345 * t350),
-                t352 * t357, t359 * t364, -::overact::math::signed(t343, t338),
-                -::overact::math::signed(t350, t345), ::overact::math::signed(t357, t352),
-                ::overact::math::signed(t364, t359), t343, -t350, -t357, t364, t378 * t381,
-                t383 * t386, t388 * t391, t393 * t396, ::overact::math::signed(t381, t378),
-                ::overact::math::signed(t386, t383), ::overact::math::signed(t391, t388),
-                ::overact::math::signed(t396, t393), t381,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t289 + g2_wz_leg1 * t291),
+                g1_wz_leg2 * t300 + minus_g2_wz_leg2 * t302,
+                g1_wz_leg3 * t311 + minus_g2_wz_leg3 * t313,
+                -(minus_g1_wz_leg4 * t322 + g2_wz_leg4 * t324), -(t333 * t338), -(t340 * t345),
+                t347 * t352, t354 * t359, -::overact::math::signed(t338, t333),
+                -::overact::math::signed(t345, t340), ::overact::math::signed(t352, t347),
+                ::overact::math::signed(t359, t354), t338, -t345, -t352, t359, t373 * t376,
+                t378 * t381, t383 * t386, t388 * t391, ::overact::math::signed(t376, t373),
+                ::overact::math::signed(t381, t378), ::overact::math::signed(t386, t383),
+                ::overact::math::signed(t391, t388), t376,
             ],
         ])
     }
@@ -3561,7 +3535,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 318 operations (100 additions, 214 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 233 intermediates.
+    /// 314 operations (96 additions, 214 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 229 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3583,121 +3557,119 @@ impl DualV {
         ::overact::guard::leg(s2_leg4, 0.9999890064153126, "leg4")?;
         let t2 = 0.11 * c_phi;
         let t3 = t2 * twist[2];
-        let t4 = twist[2] * t3;
         let t5 = 0.11 * s_phi;
-        let t6 = t5 * acceleration[2];
-        let t8 = 9.090909090909092 * (t4 + t6);
-        let t9 = t2 * acceleration[2];
-        let t10 = t5 * twist[2];
-        let t11 = twist[2] * t10;
-        let t13 = 9.090909090909092 * (t9 - t11);
+        let t7 = twist[2] * t3 + t5 * acceleration[2];
+        let t8 = 9.090909090909092 * t7;
+        let t9 = t5 * twist[2];
+        let t12 = twist[2] * t9 - t2 * acceleration[2];
+        let t13 = 9.090909090909092 * t12;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t30 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t30;
-        let t33 = acceleration[0] - t9 + t11;
-        let t36 = acceleration[1] - t6 - t4;
+        let t32 = t12 + acceleration[0];
+        let t34 = acceleration[1] - t7;
         let minus_g2_vx_leg1 = c1_leg1 * t30;
-        let t40 = twist[0] - t3;
+        let t38 = twist[0] - t3;
         let minus_g2_vy_leg1 = s1_leg1 * t30;
-        let t43 = twist[1] - t10;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t40 + minus_g2_vy_leg1 * t43;
-        let t46 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t48 = c12_leg1 * t33 + s12_leg1 * t36 + 0.28 * t46;
+        let t41 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
+        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t46 = c12_leg1 * t32 + s12_leg1 * t34 + 0.28 * t44;
         let g1_vy_leg1 = s12_leg1 * t30;
-        let rate_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t43;
-        let t53 = rate_1_leg1 * rate_1_leg1;
-        let t54 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t30 * (t48 + t53 * t54);
+        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
+        let t51 = rate_1_leg1 * rate_1_leg1;
+        let t52 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t30 * (t46 + t51 * t52);
         let minus_g1_wz_leg1 = g1_vy_leg1 * t5 + g1_vx_leg1 * t2;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t74 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t74;
-        let minus_g2_vx_leg2 = c1_leg2 * t74;
-        let minus_g2_vy_leg2 = s1_leg2 * t74;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t40 + minus_g2_vy_leg2 * t43;
-        let t84 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t86 = c12_leg2 * t33 + s12_leg2 * t36 + 0.28 * t84;
-        let g1_vy_leg2 = s12_leg2 * t74;
-        let rate_1_leg2 = g1_vx_leg2 * t40 + g1_vy_leg2 * t43;
-        let t91 = rate_1_leg2 * rate_1_leg2;
-        let t92 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t74 * (t86 + t91 * t92);
+        let t72 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t72;
+        let minus_g2_vx_leg2 = c1_leg2 * t72;
+        let minus_g2_vy_leg2 = s1_leg2 * t72;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t38 + minus_g2_vy_leg2 * t41;
+        let t82 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t84 = c12_leg2 * t32 + s12_leg2 * t34 + 0.28 * t82;
+        let g1_vy_leg2 = s12_leg2 * t72;
+        let rate_1_leg2 = g1_vx_leg2 * t38 + g1_vy_leg2 * t41;
+        let t89 = rate_1_leg2 * rate_1_leg2;
+        let t90 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t72 * (t84 + t89 * t90);
         let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t112 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t112;
-        let t115 = acceleration[0] + t9 - t11;
-        let t118 = acceleration[1] + t6 + t4;
-        let minus_g2_vx_leg3 = c1_leg3 * t112;
-        let t122 = twist[0] + t3;
-        let minus_g2_vy_leg3 = s1_leg3 * t112;
-        let t125 = twist[1] + t10;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t122 + minus_g2_vy_leg3 * t125;
-        let t128 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t130 = c12_leg3 * t115 + s12_leg3 * t118 + 0.28 * t128;
-        let g1_vy_leg3 = s12_leg3 * t112;
-        let rate_1_leg3 = g1_vx_leg3 * t122 + g1_vy_leg3 * t125;
-        let t135 = rate_1_leg3 * rate_1_leg3;
-        let t136 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t112 * (t130 + t135 * t136);
+        let t110 = 3.5714285714285716 / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * t110;
+        let t112 = acceleration[0] - t12;
+        let t114 = t7 + acceleration[1];
+        let minus_g2_vx_leg3 = c1_leg3 * t110;
+        let t118 = twist[0] + t3;
+        let minus_g2_vy_leg3 = s1_leg3 * t110;
+        let t121 = twist[1] + t9;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t118 + minus_g2_vy_leg3 * t121;
+        let t124 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t126 = c12_leg3 * t112 + s12_leg3 * t114 + 0.28 * t124;
+        let g1_vy_leg3 = s12_leg3 * t110;
+        let rate_1_leg3 = g1_vx_leg3 * t118 + g1_vy_leg3 * t121;
+        let t131 = rate_1_leg3 * rate_1_leg3;
+        let t132 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t110 * (t126 + t131 * t132);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t156 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t156;
-        let minus_g2_vx_leg4 = c1_leg4 * t156;
-        let minus_g2_vy_leg4 = s1_leg4 * t156;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t122 + minus_g2_vy_leg4 * t125;
-        let t166 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t168 = c12_leg4 * t115 + s12_leg4 * t118 + 0.28 * t166;
-        let g1_vy_leg4 = s12_leg4 * t156;
-        let rate_1_leg4 = g1_vx_leg4 * t122 + g1_vy_leg4 * t125;
-        let t173 = rate_1_leg4 * rate_1_leg4;
-        let t174 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t156 * (t168 + t173 * t174);
+        let t152 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t152;
+        let minus_g2_vx_leg4 = c1_leg4 * t152;
+        let minus_g2_vy_leg4 = s1_leg4 * t152;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t118 + minus_g2_vy_leg4 * t121;
+        let t162 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t164 = c12_leg4 * t112 + s12_leg4 * t114 + 0.28 * t162;
+        let g1_vy_leg4 = s12_leg4 * t152;
+        let rate_1_leg4 = g1_vx_leg4 * t118 + g1_vy_leg4 * t121;
+        let t169 = rate_1_leg4 * rate_1_leg4;
+        let t170 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t152 * (t164 + t169 * t170);
         let g1_wz_leg4 = t5 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t212 = c1_leg1 * t33 + s1_leg1 * t36 + 0.28 * t53;
-        let minus_rate_dot_2_leg1 = t30 * (t212 + t46 * t54);
+        let t208 = c1_leg1 * t32 + s1_leg1 * t34 + 0.28 * t51;
+        let minus_rate_dot_2_leg1 = t30 * (t208 + t44 * t52);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t5 + minus_g2_vx_leg1 * t2;
-        let t226 = c1_leg2 * t33 + s1_leg2 * t36 + 0.28 * t91;
-        let minus_rate_dot_2_leg2 = t74 * (t226 + t84 * t92);
+        let t222 = c1_leg2 * t32 + s1_leg2 * t34 + 0.28 * t89;
+        let minus_rate_dot_2_leg2 = t72 * (t222 + t82 * t90);
         let g2_wz_leg2 = t5 * minus_g2_vy_leg2 + t2 * minus_g2_vx_leg2;
-        let t240 = c1_leg3 * t115 + s1_leg3 * t118 + 0.28 * t135;
-        let minus_rate_dot_2_leg3 = t112 * (t240 + t128 * t136);
+        let t236 = c1_leg3 * t112 + s1_leg3 * t114 + 0.28 * t131;
+        let minus_rate_dot_2_leg3 = t110 * (t236 + t124 * t132);
         let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t254 = c1_leg4 * t115 + s1_leg4 * t118 + 0.28 * t173;
-        let minus_rate_dot_2_leg4 = t156 * (t254 + t166 * t174);
+        let t250 = c1_leg4 * t112 + s1_leg4 * t114 + 0.28 * t169;
+        let minus_rate_dot_2_leg4 = t152 * (t250 + t162 * t170);
         let minus_g2_wz_leg4 = t5 * minus_g2_vy_leg4 + t2 * minus_g2_vx_leg4;
-        let t300 = rate_1_leg1 + minus_rate_2_leg1;
-        let t301 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t303 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t305 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t307 = rate_1_leg2 + minus_rate_2_leg2;
-        let t308 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t310 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t312 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t314 = rate_1_leg3 + minus_rate_2_leg3;
-        let t315 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t317 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t319 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t321 = rate_1_leg4 + minus_rate_2_leg4;
-        let t322 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t324 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t326 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t340 = minus_rate_2_leg1 + twist[2];
-        let t343 = 1.0 - g2_wz_leg1;
-        let t345 = minus_rate_2_leg2 + twist[2];
-        let t348 = 1.0 - g2_wz_leg2;
-        let t350 = minus_rate_2_leg3 + twist[2];
-        let t353 = minus_g2_wz_leg3 + 1.0;
-        let t355 = minus_rate_2_leg4 + twist[2];
-        let t358 = minus_g2_wz_leg4 + 1.0;
+        let t296 = rate_1_leg1 + minus_rate_2_leg1;
+        let t297 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t299 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t301 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t303 = rate_1_leg2 + minus_rate_2_leg2;
+        let t304 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t306 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let t308 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t310 = rate_1_leg3 + minus_rate_2_leg3;
+        let t311 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t313 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t315 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t317 = rate_1_leg4 + minus_rate_2_leg4;
+        let t318 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t320 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t322 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t336 = minus_rate_2_leg1 + twist[2];
+        let t339 = 1.0 - g2_wz_leg1;
+        let t341 = minus_rate_2_leg2 + twist[2];
+        let t344 = 1.0 - g2_wz_leg2;
+        let t346 = minus_rate_2_leg3 + twist[2];
+        let t349 = minus_g2_wz_leg3 + 1.0;
+        let t351 = minus_rate_2_leg4 + twist[2];
+        let t354 = minus_g2_wz_leg4 + 1.0;
         Ok([
             [
-                0.0, -t8, -t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
                 g1_vx_leg2 * rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
                 g1_vx_leg4 * rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1, g1_vx_leg2 * rate_1_leg2,
                 g1_vx_leg3 * rate_1_leg3, g1_vx_leg4 * rate_1_leg4,
@@ -3708,21 +3680,21 @@ impl DualV {
                 g1_vx_leg3, g1_vx_leg4, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vx_leg4 * minus_rate_dot_2_leg4,
-                g1_vx_leg1 * t212 + minus_g2_vx_leg1 * t48,
-                g1_vx_leg2 * t226 + minus_g2_vx_leg2 * t86,
-                g1_vx_leg3 * t240 + minus_g2_vx_leg3 * t130,
-                g1_vx_leg4 * t254 + minus_g2_vx_leg4 * t168, t300 * t301, t307 * t308, t314 * t315,
-                t321 * t322, ::overact::math::signed(t301, t300),
-                ::overact::math::signed(t308, t307), ::overact::math::signed(t315, t314),
-                ::overact::math::signed(t322, t321), -t301, -t308, -t315, -t322,
-                minus_g2_vx_leg1 * t340, minus_g2_vx_leg2 * t345, minus_g2_vx_leg3 * t350,
-                minus_g2_vx_leg4 * t355, ::overact::math::signed(minus_g2_vx_leg1, t340),
-                ::overact::math::signed(minus_g2_vx_leg2, t345),
-                ::overact::math::signed(minus_g2_vx_leg3, t350),
-                ::overact::math::signed(minus_g2_vx_leg4, t355), minus_g2_vx_leg1,
+                g1_vx_leg1 * t208 + minus_g2_vx_leg1 * t46,
+                g1_vx_leg2 * t222 + minus_g2_vx_leg2 * t84,
+                g1_vx_leg3 * t236 + minus_g2_vx_leg3 * t126,
+                g1_vx_leg4 * t250 + minus_g2_vx_leg4 * t164, t296 * t297, t303 * t304, t310 * t311,
+                t317 * t318, ::overact::math::signed(t297, t296),
+                ::overact::math::signed(t304, t303), ::overact::math::signed(t311, t310),
+                ::overact::math::signed(t318, t317), -t297, -t304, -t311, -t318,
+                minus_g2_vx_leg1 * t336, minus_g2_vx_leg2 * t341, minus_g2_vx_leg3 * t346,
+                minus_g2_vx_leg4 * t351, ::overact::math::signed(minus_g2_vx_leg1, t336),
+                ::overact::math::signed(minus_g2_vx_leg2, t341),
+                ::overact::math::signed(minus_g2_vx_leg3, t346),
+                ::overact::math::signed(minus_g2_vx_leg4, t351), minus_g2_vx_leg1,
             ],
             [
-                0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
                 g1_vy_leg2 * rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
                 g1_vy_leg4 * rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1, g1_vy_leg2 * rate_1_leg2,
                 g1_vy_leg3 * rate_1_leg3, g1_vy_leg4 * rate_1_leg4,
@@ -3733,22 +3705,22 @@ impl DualV {
                 g1_vy_leg3, g1_vy_leg4, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vy_leg4 * minus_rate_dot_2_leg4,
-                g1_vy_leg1 * t212 + minus_g2_vy_leg1 * t48,
-                g1_vy_leg2 * t226 + minus_g2_vy_leg2 * t86,
-                g1_vy_leg3 * t240 + minus_g2_vy_leg3 * t130,
-                g1_vy_leg4 * t254 + minus_g2_vy_leg4 * t168, t300 * t303, t307 * t310, t314 * t317,
-                t321 * t324, ::overact::math::signed(t303, t300),
-                ::overact::math::signed(t310, t307), ::overact::math::signed(t317, t314),
-                ::overact::math::signed(t324, t321), -t303, -t310, -t317, -t324,
-                minus_g2_vy_leg1 * t340, minus_g2_vy_leg2 * t345, minus_g2_vy_leg3 * t350,
-                minus_g2_vy_leg4 * t355, ::overact::math::signed(minus_g2_vy_leg1, t340),
-                ::overact::math::signed(minus_g2_vy_leg2, t345),
-                ::overact::math::signed(minus_g2_vy_leg3, t350),
-                ::overact::math::signed(minus_g2_vy_leg4, t355), minus_g2_vy_leg1,
+                g1_vy_leg1 * t208 + minus_g2_vy_leg1 * t46,
+                g1_vy_leg2 * t222 + minus_g2_vy_leg2 * t84,
+                g1_vy_leg3 * t236 + minus_g2_vy_leg3 * t126,
+                g1_vy_leg4 * t250 + minus_g2_vy_leg4 * t164, t296 * t299, t303 * t306, t310 * t313,
+                t317 * t320, ::overact::math::signed(t299, t296),
+                ::overact::math::signed(t306, t303), ::overact::math::signed(t313, t310),
+                ::overact::math::signed(t320, t317), -t299, -t306, -t313, -t320,
+                minus_g2_vy_leg1 * t336, minus_g2_vy_leg2 * t341, minus_g2_vy_leg3 * t346,
+                minus_g2_vy_leg4 * t351, ::overact::math::signed(minus_g2_vy_leg1, t336),
+                ::overact::math::signed(minus_g2_vy_leg2, t341),
+                ::overact::math::signed(minus_g2_vy_leg3, t346),
+                ::overact::math::signed(minus_g2_vy_leg4, t351), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(minus_g1_wz_leg2 * rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, g1_wz_leg4 * rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(minus_g1_wz_leg2 * rate_1_leg2),
@@ -3760,16 +3732,16 @@ impl DualV {
                 -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
-                -(minus_g1_wz_leg1 * t212 + g2_wz_leg1 * t48),
-                -(minus_g1_wz_leg2 * t226 + g2_wz_leg2 * t86),
-                g1_wz_leg3 * t240 + minus_g2_wz_leg3 * t130,
-                g1_wz_leg4 * t254 + minus_g2_wz_leg4 * t168, -(t300 * t305), -(t307 * t312),
-                t314 * t319, t321 * t326, -::overact::math::signed(t305, t300),
-                -::overact::math::signed(t312, t307), ::overact::math::signed(t319, t314),
-                ::overact::math::signed(t326, t321), t305, t312, -t319, -t326, t340 * t343,
-                t345 * t348, t350 * t353, t355 * t358, ::overact::math::signed(t343, t340),
-                ::overact::math::signed(t348, t345), ::overact::math::signed(t353, t350),
-                ::overact::math::signed(t358, t355), t343,
+                -(minus_g1_wz_leg1 * t208 + g2_wz_leg1 * t46),
+                -(minus_g1_wz_leg2 * t222 + g2_wz_leg2 * t84),
+                g1_wz_leg3 * t236 + minus_g2_wz_leg3 * t126,
+                g1_wz_leg4 * t250 + minus_g2_wz_leg4 * t164, -(t296 * t301), -(t303 * t308),
+                t310 * t315, t317 * t322, -::overact::math::signed(t301, t296),
+                -::overact::math::signed(t308, t303), ::overact::math::signed(t315, t310),
+                ::overact::math::signed(t322, t317), t301, t308, -t315, -t322, t336 * t339,
+                t341 * t344, t346 * t349, t351 * t354, ::overact::math::signed(t339, t336),
+                ::overact::math::signed(t344, t341), ::overact::math::signed(t349, t346),
+                ::overact::math::signed(t354, t351), t339,
             ],
         ])
     }
@@ -3784,7 +3756,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 524 operations (198 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 424 intermediates.
+    /// 519 operations (193 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 419 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3798,7 +3770,8 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = 0.11 * c_phi;
-        let t5 = pose[1] + t3 - 0.10970563941232059;
+        let t4 = t3 + -0.10970563941232059;
+        let t5 = pose[1] + t4;
         let t6 = 0.5 * t5;
         let t7 = pose[0] - t2;
         let t8 = t7 - 0.3950502153918333;
@@ -3832,207 +3805,207 @@ impl DualV {
         let t46 = t30 - t45;
         let minus_g1_vx_leg2 = t46 * t40;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t53 = pose[1] - t3 + 0.10970563941232059;
-        let t54 = 0.5 * t53;
-        let t55 = pose[0] + t2;
-        let t56 = t55 + 0.3950502153918333;
-        let t58 = t53 * t53;
-        let t59 = t56 * t56 + t58;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = t54 - t56 * t62;
-        let t65 = t53 - t64;
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg3")?;
-        let t67 = 1.0 / t66;
-        let g1_vy_leg3 = t65 * t67;
-        let t72 = 0.5 * t56 + t53 * t62;
-        let t73 = t56 - t72;
-        let g1_vx_leg3 = t73 * t67;
+        let t52 = pose[1] - t4;
+        let t53 = 0.5 * t52;
+        let t54 = pose[0] + t2;
+        let t55 = t54 + 0.3950502153918333;
+        let t57 = t52 * t52;
+        let t58 = t55 * t55 + t57;
+        let t60 = 0.0784 / t58 - 0.25;
+        ::overact::guard::reach(t60, "leg3")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = t53 - t55 * t61;
+        let t64 = t52 - t63;
+        let t65 = t58 * t61;
+        ::overact::guard::leg(t65, 0.07839913810297301, "leg3")?;
+        let t66 = 1.0 / t65;
+        let g1_vy_leg3 = t64 * t66;
+        let t71 = 0.5 * t55 + t52 * t61;
+        let t72 = t55 - t71;
+        let g1_vx_leg3 = t72 * t66;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t79 = t55 - 0.3950502153918333;
-        let t81 = t79 * t79 + t58;
-        let t83 = 0.0784 / t81 - 0.25;
-        ::overact::guard::reach(t83, "leg4")?;
-        let t84 = ::overact::math::sqrt(t83);
-        let t86 = t54 + t79 * t84;
-        let t87 = t53 - t86;
-        let t88 = t81 * t84;
-        ::overact::guard::leg(t88, 0.07839913810297301, "leg4")?;
-        let t89 = 1.0 / t88;
-        let minus_g1_vy_leg4 = t87 * t89;
-        let t94 = 0.5 * t79 - t53 * t84;
-        let t95 = t79 - t94;
-        let minus_g1_vx_leg4 = t95 * t89;
+        let t78 = t54 - 0.3950502153918333;
+        let t80 = t78 * t78 + t57;
+        let t82 = 0.0784 / t80 - 0.25;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        let t85 = t53 + t78 * t83;
+        let t86 = t52 - t85;
+        let t87 = t80 * t83;
+        ::overact::guard::leg(t87, 0.07839913810297301, "leg4")?;
+        let t88 = 1.0 / t87;
+        let minus_g1_vy_leg4 = t86 * t88;
+        let t93 = 0.5 * t78 - t52 * t83;
+        let t94 = t78 - t93;
+        let minus_g1_vx_leg4 = t94 * t88;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
-        let t107 = g1_vx_leg3 * g1_wz_leg3
+        let t106 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t114 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t113 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t114, 25.429161076750646, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t113, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t113, 25.429161076750646, "actuators")?;
+        let t114 = 1.0 / t113;
+        let t115 = t106 * t114;
+        let t131 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t134 = g1_vy_leg3 * g1_wz_leg3
+        let t133 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
-        let t142 = t132 * t115;
-        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t131 * t115;
+        let t141 = t131 * t114;
+        let t143 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t132 * t142;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = t134 * t145;
-        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t107 * t116
-            - t134 * t146;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t163 = g1_vx_leg1 * actuator_velocities[0]
+            - t131 * t141;
+        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
+        let t144 = 1.0 / t143;
+        let t145 = t133 * t144;
+        let t147 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t106 * t115
+            - t133 * t145;
+        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
+        let t148 = 1.0 / t147;
+        let t162 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t174 = g1_vy_leg1 * actuator_velocities[0]
+        let t173 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
-        let t176 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t162 * t141;
+        let t175 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
-        let rate_3_leg1 = t149 * t176;
-        let t178 = t3 * rate_3_leg1;
-        let t179 = rate_3_leg1 * t178;
-        let t181 = t2 * rate_3_leg1;
-        let t182 = rate_3_leg1 * t181;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t162 * t115 - t145 * t173;
+        let rate_3_leg1 = t148 * t175;
+        let t177 = t3 * rate_3_leg1;
+        let t178 = rate_3_leg1 * t177;
+        let t180 = t2 * rate_3_leg1;
+        let t181 = rate_3_leg1 * t180;
         let g2_vx_leg2 = t45 * t40;
-        let t189 = t145 * t174 - t146 * rate_3_leg1;
-        let t193 = t163 * t115 - t142 * t189 - t116 * rate_3_leg1;
-        let t194 = t193 - t178;
+        let t188 = t144 * t173 - t145 * rate_3_leg1;
+        let t192 = t162 * t114 - t141 * t188 - t115 * rate_3_leg1;
+        let t193 = t192 - t177;
         let g2_vy_leg2 = t37 * t40;
-        let t197 = t189 - t181;
-        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
-        let t200 = rate_2_leg2 * rate_2_leg2;
-        let t201 = 0.0784 * t200;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
-        let t206 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t208 = 0.5 * (t32 - 0.1568);
-        let t209 = t206 * t208;
-        let rate_dot_1_leg2 = t40 * (t38 * t179 - t46 * t182 - t201 - t209);
-        let t212 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t196 = t188 - t180;
+        let rate_2_leg2 = g2_vx_leg2 * t193 + g2_vy_leg2 * t196;
+        let t199 = rate_2_leg2 * rate_2_leg2;
+        let t200 = 0.0784 * t199;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t196;
+        let t205 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t207 = 0.5 * (t32 - 0.1568);
+        let t208 = t205 * t207;
+        let rate_dot_1_leg2 = t40 * (t38 * t178 - t46 * t181 - t200 - t208);
+        let t211 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg1 = t24 * t19;
         let minus_g2_vy_leg1 = t16 * t19;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
-        let t222 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t223 = 0.0784 * t222;
-        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
-        let t228 = rate_1_leg1 * rate_1_leg1;
-        let t230 = 0.5 * (t11 - 0.1568);
-        let t231 = t228 * t230;
-        let minus_rate_dot_1_leg1 = t19 * (t17 * t179 - t25 * t182 - t223 - t231);
-        let t234 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let minus_g2_vx_leg3 = t72 * t67;
-        let t241 = t193 + t178;
-        let minus_g2_vy_leg3 = t64 * t67;
-        let t244 = t189 + t181;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
-        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t248 = 0.0784 * t247;
-        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
-        let t253 = rate_1_leg3 * rate_1_leg3;
-        let t255 = 0.5 * (t59 - 0.1568);
-        let t256 = t253 * t255;
-        let minus_rate_dot_1_leg3 = t67 * (t73 * t182 - t65 * t179 - t248 - t256);
-        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t94 * t89;
-        let g2_vy_leg4 = t86 * t89;
-        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
-        let t270 = rate_2_leg4 * rate_2_leg4;
-        let t271 = 0.0784 * t270;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
-        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t278 = 0.5 * (t81 - 0.1568);
-        let t279 = t276 * t278;
-        let rate_dot_1_leg4 = t89 * (t95 * t182 - t87 * t179 - t271 - t279);
-        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t291 = g1_vx_leg1 * t234 - minus_g1_vx_leg2 * t212 + g1_vx_leg3 * t259
-            - minus_g1_vx_leg4 * t282;
-        let t302 = g1_vy_leg1 * t234 - minus_g1_vy_leg2 * t212 + g1_vy_leg3 * t259
-            - minus_g1_vy_leg4 * t282 - t142 * t291;
-        let t304 = g1_wz_leg2 * t212 - minus_g1_wz_leg1 * t234 + g1_wz_leg3 * t259
-            - minus_g1_wz_leg4 * t282 - t116 * t291 - t146 * t302;
-        let rate_dot_3_leg1 = t149 * t304;
-        let t306 = t2 * rate_dot_3_leg1;
-        let t308 = 9.090909090909092 * (t179 + t306);
-        let t309 = t3 * rate_dot_3_leg1;
-        let t311 = 9.090909090909092 * (t309 - t182);
-        let t314 = t145 * t302 - t146 * rate_dot_3_leg1;
-        let t320 = t115 * t291 - t142 * t314 - t116 * rate_dot_3_leg1;
-        let t327 = t320 - t309 + t182;
-        let t330 = t314 - t306 - t179;
-        let t333 = t25 * t327 + t17 * t330 + t223;
-        let rate_dot_1_leg1 = t19 * (t333 + t231);
-        let t342 = t46 * t327 + t38 * t330 + t201;
-        let minus_rate_dot_1_leg2 = t40 * (t342 + t209);
-        let t349 = t320 + t309 - t182;
-        let t352 = t314 + t306 + t179;
-        let t355 = t73 * t349 + t65 * t352 + t248;
-        let rate_dot_1_leg3 = t67 * (t355 + t256);
-        let t364 = t95 * t349 + t87 * t352 + t271;
-        let minus_rate_dot_1_leg4 = t89 * (t364 + t279);
-        let t398 = t24 * t327 + t16 * t330 + 0.0784 * t228;
-        let minus_rate_dot_2_leg1 = t19 * (t398 + t222 * t230);
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t193 + minus_g2_vy_leg1 * t196;
+        let t221 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t222 = 0.0784 * t221;
+        let rate_1_leg1 = g1_vx_leg1 * t193 + g1_vy_leg1 * t196;
+        let t227 = rate_1_leg1 * rate_1_leg1;
+        let t229 = 0.5 * (t11 - 0.1568);
+        let t230 = t227 * t229;
+        let minus_rate_dot_1_leg1 = t19 * (t17 * t178 - t25 * t181 - t222 - t230);
+        let t233 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let minus_g2_vx_leg3 = t71 * t66;
+        let t240 = t192 + t177;
+        let minus_g2_vy_leg3 = t63 * t66;
+        let t243 = t188 + t180;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t240 + minus_g2_vy_leg3 * t243;
+        let t246 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t247 = 0.0784 * t246;
+        let rate_1_leg3 = g1_vx_leg3 * t240 + g1_vy_leg3 * t243;
+        let t252 = rate_1_leg3 * rate_1_leg3;
+        let t254 = 0.5 * (t58 - 0.1568);
+        let t255 = t252 * t254;
+        let minus_rate_dot_1_leg3 = t66 * (t72 * t181 - t64 * t178 - t247 - t255);
+        let t258 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t93 * t88;
+        let g2_vy_leg4 = t85 * t88;
+        let rate_2_leg4 = g2_vx_leg4 * t240 + g2_vy_leg4 * t243;
+        let t269 = rate_2_leg4 * rate_2_leg4;
+        let t270 = 0.0784 * t269;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t240 + minus_g1_vy_leg4 * t243;
+        let t275 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t277 = 0.5 * (t80 - 0.1568);
+        let t278 = t275 * t277;
+        let rate_dot_1_leg4 = t88 * (t94 * t181 - t86 * t178 - t270 - t278);
+        let t281 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t290 = g1_vx_leg1 * t233 - minus_g1_vx_leg2 * t211 + g1_vx_leg3 * t258
+            - minus_g1_vx_leg4 * t281;
+        let t301 = g1_vy_leg1 * t233 - minus_g1_vy_leg2 * t211 + g1_vy_leg3 * t258
+            - minus_g1_vy_leg4 * t281 - t141 * t290;
+        let t303 = g1_wz_leg2 * t211 - minus_g1_wz_leg1 * t233 + g1_wz_leg3 * t258
+            - minus_g1_wz_leg4 * t281 - t115 * t290 - t145 * t301;
+        let rate_dot_3_leg1 = t148 * t303;
+        let t306 = t178 + t2 * rate_dot_3_leg1;
+        let t307 = 9.090909090909092 * t306;
+        let t309 = t181 - t3 * rate_dot_3_leg1;
+        let t310 = 9.090909090909092 * t309;
+        let t313 = t144 * t301 - t145 * rate_dot_3_leg1;
+        let t319 = t114 * t290 - t141 * t313 - t115 * rate_dot_3_leg1;
+        let t325 = t309 + t319;
+        let t327 = t313 - t306;
+        let t330 = t25 * t325 + t17 * t327 + t222;
+        let rate_dot_1_leg1 = t19 * (t330 + t230);
+        let t339 = t46 * t325 + t38 * t327 + t200;
+        let minus_rate_dot_1_leg2 = t40 * (t339 + t208);
+        let t345 = t319 - t309;
+        let t347 = t306 + t313;
+        let t350 = t72 * t345 + t64 * t347 + t247;
+        let rate_dot_1_leg3 = t66 * (t350 + t255);
+        let t359 = t94 * t345 + t86 * t347 + t270;
+        let minus_rate_dot_1_leg4 = t88 * (t359 + t278);
+        let t393 = t24 * t325 + t16 * t327 + 0.0784 * t227;
+        let minus_rate_dot_2_leg1 = t19 * (t393 + t221 * t229);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t3 * minus_g2_vx_leg1;
-        let t412 = t45 * t327 + t37 * t330 + 0.0784 * t206;
-        let rate_dot_2_leg2 = t40 * (t412 + t200 * t208);
+        let t407 = t45 * t325 + t37 * t327 + 0.0784 * t205;
+        let rate_dot_2_leg2 = t40 * (t407 + t199 * t207);
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t3 * g2_vx_leg2;
-        let t426 = t72 * t349 + t64 * t352 + 0.0784 * t253;
-        let minus_rate_dot_2_leg3 = t67 * (t426 + t247 * t255);
+        let t421 = t71 * t345 + t63 * t347 + 0.0784 * t252;
+        let minus_rate_dot_2_leg3 = t66 * (t421 + t246 * t254);
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t3 * minus_g2_vx_leg3;
-        let t440 = t94 * t349 + t86 * t352 + 0.0784 * t276;
-        let rate_dot_2_leg4 = t89 * (t440 + t270 * t278);
+        let t435 = t93 * t345 + t85 * t347 + 0.0784 * t275;
+        let rate_dot_2_leg4 = t88 * (t435 + t269 * t277);
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t3 * g2_vx_leg4;
-        let t450 = 3.5714285714285716 * t398;
-        let t452 = 3.5714285714285716 * t333;
-        let t461 = 3.5714285714285716 * t412;
-        let t463 = 3.5714285714285716 * t342;
-        let t472 = 3.5714285714285716 * t426;
-        let t474 = 3.5714285714285716 * t355;
-        let t483 = 3.5714285714285716 * t440;
-        let t485 = 3.5714285714285716 * t364;
-        let t494 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t495 = rate_1_leg1 + minus_rate_2_leg1;
-        let t497 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t499 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t501 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t502 = minus_rate_1_leg2 + rate_2_leg2;
-        let t504 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t506 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t508 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t509 = rate_1_leg3 + minus_rate_2_leg3;
-        let t511 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t513 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t515 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t516 = minus_rate_1_leg4 + rate_2_leg4;
-        let t518 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t520 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t534 = minus_rate_2_leg1 + rate_3_leg1;
-        let t537 = 1.0 - g2_wz_leg1;
-        let t539 = rate_3_leg1 - rate_2_leg2;
-        let t542 = minus_g2_wz_leg2 + 1.0;
-        let t544 = minus_rate_2_leg3 + rate_3_leg1;
-        let t547 = minus_g2_wz_leg3 + 1.0;
-        let t549 = rate_3_leg1 - rate_2_leg4;
-        let t552 = 1.0 - g2_wz_leg4;
+        let t445 = 3.5714285714285716 * t393;
+        let t447 = 3.5714285714285716 * t330;
+        let t456 = 3.5714285714285716 * t407;
+        let t458 = 3.5714285714285716 * t339;
+        let t467 = 3.5714285714285716 * t421;
+        let t469 = 3.5714285714285716 * t350;
+        let t478 = 3.5714285714285716 * t435;
+        let t480 = 3.5714285714285716 * t359;
+        let t489 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t490 = rate_1_leg1 + minus_rate_2_leg1;
+        let t492 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t494 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t496 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t497 = minus_rate_1_leg2 + rate_2_leg2;
+        let t499 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t501 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t503 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t504 = rate_1_leg3 + minus_rate_2_leg3;
+        let t506 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t508 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t510 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t511 = minus_rate_1_leg4 + rate_2_leg4;
+        let t513 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t515 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t529 = minus_rate_2_leg1 + rate_3_leg1;
+        let t532 = 1.0 - g2_wz_leg1;
+        let t534 = rate_3_leg1 - rate_2_leg2;
+        let t537 = minus_g2_wz_leg2 + 1.0;
+        let t539 = minus_rate_2_leg3 + rate_3_leg1;
+        let t542 = minus_g2_wz_leg3 + 1.0;
+        let t544 = rate_3_leg1 - rate_2_leg4;
+        let t547 = 1.0 - g2_wz_leg4;
         Ok([
             [
-                0.0, -t308, -t311, t320, g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -t307, t310, t319, g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -4044,21 +4017,21 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t450 + minus_g2_vx_leg1 * t452,
-                -(minus_g1_vx_leg2 * t461 + g2_vx_leg2 * t463),
-                g1_vx_leg3 * t472 + minus_g2_vx_leg3 * t474,
-                -(minus_g1_vx_leg4 * t483 + g2_vx_leg4 * t485), t494 * t495, t501 * t502,
-                t508 * t509, t515 * t516, ::overact::math::signed(t494, t495),
-                ::overact::math::signed(t501, t502), ::overact::math::signed(t508, t509),
-                ::overact::math::signed(t515, t516), -t494, t501, -t508, t515,
-                minus_g2_vx_leg1 * t534, -(g2_vx_leg2 * t539), minus_g2_vx_leg3 * t544,
-                -(g2_vx_leg4 * t549), ::overact::math::signed(minus_g2_vx_leg1, t534),
-                -::overact::math::signed(g2_vx_leg2, t539),
-                ::overact::math::signed(minus_g2_vx_leg3, t544),
-                -::overact::math::signed(g2_vx_leg4, t549), minus_g2_vx_leg1,
+                g1_vx_leg1 * t445 + minus_g2_vx_leg1 * t447,
+                -(minus_g1_vx_leg2 * t456 + g2_vx_leg2 * t458),
+                g1_vx_leg3 * t467 + minus_g2_vx_leg3 * t469,
+                -(minus_g1_vx_leg4 * t478 + g2_vx_leg4 * t480), t489 * t490, t496 * t497,
+                t503 * t504, t510 * t511, ::overact::math::signed(t489, t490),
+                ::overact::math::signed(t496, t497), ::overact::math::signed(t503, t504),
+                ::overact::math::signed(t510, t511), -t489, t496, -t503, t510,
+                minus_g2_vx_leg1 * t529, -(g2_vx_leg2 * t534), minus_g2_vx_leg3 * t539,
+                -(g2_vx_leg4 * t544), ::overact::math::signed(minus_g2_vx_leg1, t529),
+                -::overact::math::signed(g2_vx_leg2, t534),
+                ::overact::math::signed(minus_g2_vx_leg3, t539),
+                -::overact::math::signed(g2_vx_leg4, t544), minus_g2_vx_leg1,
             ],
             [
-                0.0, t311, -t308, t314, g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t310, -t307, t313, g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
                 minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
@@ -4070,21 +4043,21 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t450 + minus_g2_vy_leg1 * t452,
-                -(minus_g1_vy_leg2 * t461 + g2_vy_leg2 * t463),
-                g1_vy_leg3 * t472 + minus_g2_vy_leg3 * t474,
-                -(minus_g1_vy_leg4 * t483 + g2_vy_leg4 * t485), t497 * t495, t504 * t502,
-                t511 * t509, t518 * t516, ::overact::math::signed(t497, t495),
-                ::overact::math::signed(t504, t502), ::overact::math::signed(t511, t509),
-                ::overact::math::signed(t518, t516), -t497, t504, -t511, t518,
-                minus_g2_vy_leg1 * t534, -(g2_vy_leg2 * t539), minus_g2_vy_leg3 * t544,
-                -(g2_vy_leg4 * t549), ::overact::math::signed(minus_g2_vy_leg1, t534),
-                -::overact::math::signed(g2_vy_leg2, t539),
-                ::overact::math::signed(minus_g2_vy_leg3, t544),
-                -::overact::math::signed(g2_vy_leg4, t549), minus_g2_vy_leg1,
+                g1_vy_leg1 * t445 + minus_g2_vy_leg1 * t447,
+                -(minus_g1_vy_leg2 * t456 + g2_vy_leg2 * t458),
+                g1_vy_leg3 * t467 + minus_g2_vy_leg3 * t469,
+                -(minus_g1_vy_leg4 * t478 + g2_vy_leg4 * t480), t492 * t490, t499 * t497,
+                t506 * t504, t513 * t511, ::overact::math::signed(t492, t490),
+                ::overact::math::signed(t499, t497), ::overact::math::signed(t506, t504),
+                ::overact::math::signed(t513, t511), -t492, t499, -t506, t513,
+                minus_g2_vy_leg1 * t529, -(g2_vy_leg2 * t534), minus_g2_vy_leg3 * t539,
+                -(g2_vy_leg4 * t544), ::overact::math::signed(minus_g2_vy_leg1, t529),
+                -::overact::math::signed(g2_vy_leg2, t534),
+                ::overact::math::signed(minus_g2_vy_leg3, t539),
+                -::overact::math::signed(g2_vy_leg4, t544), minus_g2_vy_leg1,
             ],
             [
-                rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(c_phi * t320 + s_phi * t314), 0.0,
+                rate_dot_3_leg1, c_phi * t313 - s_phi * t319, -(s_phi * t313 + c_phi * t319), 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -4095,16 +4068,16 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t450 + g2_wz_leg1 * t452),
-                g1_wz_leg2 * t461 + minus_g2_wz_leg2 * t463,
-                g1_wz_leg3 * t472 + minus_g2_wz_leg3 * t474,
-                -(minus_g1_wz_leg4 * t483 + g2_wz_leg4 * t485), -(t499 * t495), -(t506 * t502),
-                t513 * t509, t520 * t516, -::overact::math::signed(t499, t495),
-                -::overact::math::signed(t506, t502), ::overact::math::signed(t513, t509),
-                ::overact::math::signed(t520, t516), t499, -t506, -t513, t520, t537 * t534,
-                t542 * t539, t547 * t544, t552 * t549, ::overact::math::signed(t537, t534),
-                ::overact::math::signed(t542, t539), ::overact::math::signed(t547, t544),
-                ::overact::math::signed(t552, t549), t537,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t445 + g2_wz_leg1 * t447),
+                g1_wz_leg2 * t456 + minus_g2_wz_leg2 * t458,
+                g1_wz_leg3 * t467 + minus_g2_wz_leg3 * t469,
+                -(minus_g1_wz_leg4 * t478 + g2_wz_leg4 * t480), -(t494 * t490), -(t501 * t497),
+                t508 * t504, t515 * t511, -::overact::math::signed(t494, t490),
+                -::overact::math::signed(t501, t497), ::overact::math::signed(t508, t504),
+                ::overact::math::signed(t515, t511), t494, -t501, -t508, t515, t532 * t529,
+                t537 * t534, t542 * t539, t547 * t544, ::overact::math::signed(t532, t529),
+                ::overact::math::signed(t537, t534), ::overact::math::signed(t542, t539),
+                ::overact::math::signed(t547, t544), t532,
             ],
         ])
     }
@@ -4118,7 +4091,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 472 operations (170 additions, 293 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 396 intermediates.
+    /// 452 operations (160 additions, 283 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 376 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4166,219 +4139,215 @@ impl DualV {
         let t46 = 0.5 * t25 + t22 * t31;
         let t47 = t25 - t46;
         let g1_vx_leg3 = t47 * t36;
-        let t51 = t3 - 0.3950502153918333;
-        let t53 = t51 * t51 + t10;
-        let t55 = 0.0784 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg1")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = t39 - t51 * t56;
-        let t59 = t8 - t58;
-        let t60 = t53 * t56;
-        ::overact::guard::leg(t60, 0.07839913810297301, "leg1")?;
-        let t61 = 1.0 / t60;
-        let g1_vy_leg1 = t59 * t61;
-        let t66 = 0.5 * t51 + t8 * t56;
-        let t67 = t51 - t66;
-        let g1_vx_leg1 = t67 * t61;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t76 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t80 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t82 = g1_vx_leg3 * t76 - g1_vy_leg3 * t80;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        let t83 = 0.5 / t82;
-        let t84 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t83;
-        let t89 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t83;
-        let t94 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t83;
-        let t95 = t94 * acceleration[2];
-        let t98 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t106 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t83;
-        let t107 = t6 * twist[2];
-        let t108 = twist[2] * t107;
-        let t109 = t2 * acceleration[2];
-        let t111 = 9.090909090909092 * (t108 + t109);
-        let t116 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t83;
-        let t117 = t6 * acceleration[2];
-        let t118 = t2 * twist[2];
-        let t119 = twist[2] * t118;
-        let t121 = 9.090909090909092 * (t117 - t119);
-        let t128 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t83;
-        let t133 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t83;
-        let t139 = t76 * t83;
-        let t141 = t80 * t83;
-        let t150 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t159 = t94 * t150;
-        let t169 = acceleration[0] - t117 + t119;
-        let t172 = acceleration[1] - t109 - t108;
-        let minus_g2_vx_leg1 = t66 * t61;
-        let t176 = twist[0] - t107;
-        let minus_g2_vy_leg1 = t58 * t61;
-        let t179 = twist[1] - t118;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t176 + minus_g2_vy_leg1 * t179;
-        let t182 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t184 = t67 * t169 + t59 * t172 + 0.0784 * t182;
-        let rate_1_leg1 = g1_vx_leg1 * t176 + g1_vy_leg1 * t179;
-        let t188 = rate_1_leg1 * rate_1_leg1;
-        let t190 = 0.5 * (t53 - 0.1568);
-        let rate_dot_1_leg1 = t61 * (t184 + t188 * t190);
+        let t54 = t3 - 0.3950502153918333;
+        let t57 = t54 * t54 + t10;
+        let t59 = 0.0784 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg1")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.5 * t54 + t8 * t60;
+        let t63 = t54 - t62;
+        let t64 = t57 * t60;
+        ::overact::guard::leg(t64, 0.07839913810297301, "leg1")?;
+        let t65 = 1.0 / t64;
+        let g1_vx_leg1 = t63 * t65;
+        let t69 = t39 - t54 * t60;
+        let t70 = t8 - t69;
+        let g1_vy_leg1 = t70 * t65;
+        let t73 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t74 = g1_wz_leg3 * t73;
+        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
+        let t75 = 0.5 / t74;
+        let t76 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t75;
+        let t81 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t75;
+        let t83 = t73 * t75;
+        let t84 = t83 * acceleration[2];
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t91 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t75;
+        let t92 = t2 * twist[2];
+        let t95 = twist[2] * t92 - t6 * acceleration[2];
+        let t96 = 9.090909090909092 * t95;
+        let t101 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t75;
+        let t102 = t6 * twist[2];
+        let t105 = twist[2] * t102 + t2 * acceleration[2];
+        let t106 = 9.090909090909092 * t105;
+        let t111 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let t120 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t75;
+        let t125 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t75;
+        let t130 = t2 * t83;
+        let t132 = t6 * t83;
+        let t142 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t151 = t83 * t142;
+        let t160 = t95 + acceleration[0];
+        let t162 = acceleration[1] - t105;
+        let minus_g2_vx_leg1 = t62 * t65;
+        let t166 = twist[0] - t102;
+        let minus_g2_vy_leg1 = t69 * t65;
+        let t169 = twist[1] - t92;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t166 + minus_g2_vy_leg1 * t169;
+        let t172 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t174 = t63 * t160 + t70 * t162 + 0.0784 * t172;
+        let rate_1_leg1 = g1_vx_leg1 * t166 + g1_vy_leg1 * t169;
+        let t178 = rate_1_leg1 * rate_1_leg1;
+        let t180 = 0.5 * (t57 - 0.1568);
+        let rate_dot_1_leg1 = t65 * (t174 + t178 * t180);
         let g2_vx_leg2 = t16 * t19;
         let g2_vy_leg2 = t41 * t19;
-        let rate_2_leg2 = g2_vx_leg2 * t176 + g2_vy_leg2 * t179;
-        let t202 = rate_2_leg2 * rate_2_leg2;
-        let t204 = t17 * t169 + t42 * t172 + 0.0784 * t202;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t179;
-        let t208 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t210 = 0.5 * (t11 - 0.1568);
-        let minus_rate_dot_1_leg2 = t19 * (t204 + t208 * t210);
-        let t215 = acceleration[0] + t117 - t119;
-        let t218 = acceleration[1] + t109 + t108;
+        let rate_2_leg2 = g2_vx_leg2 * t166 + g2_vy_leg2 * t169;
+        let t192 = rate_2_leg2 * rate_2_leg2;
+        let t194 = t17 * t160 + t42 * t162 + 0.0784 * t192;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t166 + minus_g1_vy_leg2 * t169;
+        let t198 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t200 = 0.5 * (t11 - 0.1568);
+        let minus_rate_dot_1_leg2 = t19 * (t194 + t198 * t200);
+        let t204 = acceleration[0] - t95;
+        let t206 = t105 + acceleration[1];
         let minus_g2_vx_leg3 = t46 * t36;
-        let t222 = twist[0] + t107;
+        let t210 = twist[0] + t102;
         let minus_g2_vy_leg3 = t33 * t36;
-        let t225 = twist[1] + t118;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t222 + minus_g2_vy_leg3 * t225;
-        let t228 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t230 = t47 * t215 + t34 * t218 + 0.0784 * t228;
-        let rate_1_leg3 = g1_vx_leg3 * t222 + g1_vy_leg3 * t225;
-        let t234 = rate_1_leg3 * rate_1_leg3;
-        let t236 = 0.5 * (t28 - 0.1568);
-        let rate_dot_1_leg3 = t36 * (t230 + t234 * t236);
-        let t240 = t24 - 0.3950502153918333;
-        let t242 = t240 * t240 + t27;
-        let t244 = 0.0784 / t242 - 0.25;
-        ::overact::guard::reach(t244, "leg4")?;
-        let t245 = ::overact::math::sqrt(t244);
-        let t247 = t23 + t240 * t245;
-        let t248 = t22 - t247;
-        let t249 = t242 * t245;
-        ::overact::guard::leg(t249, 0.07839913810297301, "leg4")?;
-        let t250 = 1.0 / t249;
-        let minus_g1_vy_leg4 = t248 * t250;
-        let t255 = 0.5 * t240 - t22 * t245;
-        let t256 = t240 - t255;
-        let minus_g1_vx_leg4 = t256 * t250;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t264 = minus_g1_vy_leg4 * t116 - minus_g1_vx_leg4 * t106
-            - minus_g1_wz_leg4 * t84;
-        let g2_vx_leg4 = t255 * t250;
-        let g2_vy_leg4 = t247 * t250;
-        let rate_2_leg4 = g2_vx_leg4 * t222 + g2_vy_leg4 * t225;
-        let t273 = rate_2_leg4 * rate_2_leg4;
-        let t275 = t256 * t215 + t248 * t218 + 0.0784 * t273;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t222 + minus_g1_vy_leg4 * t225;
-        let t279 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t281 = 0.5 * (t242 - 0.1568);
-        let minus_rate_dot_1_leg4 = t250 * (t275 + t279 * t281);
-        let t290 = minus_g1_vy_leg4 * t133 - minus_g1_vx_leg4 * t128
-            + minus_g1_wz_leg4 * t89;
-        let t294 = minus_g1_vy_leg4 * t141 - minus_g1_vx_leg4 * t139;
-        let t295 = 2.0 * t294;
+        let t213 = twist[1] + t92;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t210 + minus_g2_vy_leg3 * t213;
+        let t216 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t218 = t47 * t204 + t34 * t206 + 0.0784 * t216;
+        let rate_1_leg3 = g1_vx_leg3 * t210 + g1_vy_leg3 * t213;
+        let t222 = rate_1_leg3 * rate_1_leg3;
+        let t224 = 0.5 * (t28 - 0.1568);
+        let rate_dot_1_leg3 = t36 * (t218 + t222 * t224);
+        let t228 = t24 - 0.3950502153918333;
+        let t230 = t228 * t228 + t27;
+        let t232 = 0.0784 / t230 - 0.25;
+        ::overact::guard::reach(t232, "leg4")?;
+        let t233 = ::overact::math::sqrt(t232);
+        let t235 = t23 + t228 * t233;
+        let t236 = t22 - t235;
+        let t237 = t230 * t233;
+        ::overact::guard::leg(t237, 0.07839913810297301, "leg4")?;
+        let t238 = 1.0 / t237;
+        let minus_g1_vy_leg4 = t236 * t238;
+        let t243 = 0.5 * t228 - t22 * t233;
+        let t244 = t228 - t243;
+        let minus_g1_vx_leg4 = t244 * t238;
+        let t250 = minus_g1_vy_leg4 * t130 + minus_g1_vx_leg4 * t132;
+        let t251 = 2.0 * t250;
+        let minus_g1_wz_leg4 = g1_wz_leg3 * t251;
+        let t254 = minus_g1_vy_leg4 * t91 - minus_g1_vx_leg4 * t101
+            - minus_g1_wz_leg4 * t76;
+        let g2_vx_leg4 = t243 * t238;
+        let g2_vy_leg4 = t235 * t238;
+        let rate_2_leg4 = g2_vx_leg4 * t210 + g2_vy_leg4 * t213;
+        let t263 = rate_2_leg4 * rate_2_leg4;
+        let t265 = t244 * t204 + t236 * t206 + 0.0784 * t263;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t210 + minus_g1_vy_leg4 * t213;
+        let t269 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t271 = 0.5 * (t230 - 0.1568);
+        let minus_rate_dot_1_leg4 = t238 * (t265 + t269 * t271);
+        let t280 = minus_g1_vy_leg4 * t120 - minus_g1_vx_leg4 * t125
+            + minus_g1_wz_leg4 * t81;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t313 = minus_g2_vy_leg1 * t116 - minus_g2_vx_leg1 * t106 + g2_wz_leg1 * t84;
-        let t318 = t66 * t169 + t58 * t172 + 0.0784 * t188;
-        let minus_rate_dot_2_leg1 = t61 * (t318 + t182 * t190);
-        let t327 = minus_g2_vy_leg1 * t133 - minus_g2_vx_leg1 * t128 - g2_wz_leg1 * t89;
+        let t299 = minus_g2_vy_leg1 * t91 - minus_g2_vx_leg1 * t101 + g2_wz_leg1 * t76;
+        let t304 = t62 * t160 + t69 * t162 + 0.0784 * t178;
+        let minus_rate_dot_2_leg1 = t65 * (t304 + t172 * t180);
+        let t313 = minus_g2_vy_leg1 * t120 - minus_g2_vx_leg1 * t125 - g2_wz_leg1 * t81;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t336 = g2_vx_leg2 * t106 - g2_vy_leg2 * t116 - minus_g2_wz_leg2 * t84;
-        let t341 = t16 * t169 + t41 * t172 + 0.0784 * t208;
-        let rate_dot_2_leg2 = t19 * (t341 + t202 * t210);
-        let t350 = g2_vx_leg2 * t128 - g2_vy_leg2 * t133 + minus_g2_wz_leg2 * t89;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t359 = minus_g2_vy_leg3 * t116 - minus_g2_vx_leg3 * t106
-            - minus_g2_wz_leg3 * t84;
-        let t364 = t46 * t215 + t33 * t218 + 0.0784 * t234;
-        let minus_rate_dot_2_leg3 = t36 * (t364 + t228 * t236);
-        let t373 = minus_g2_vy_leg3 * t133 - minus_g2_vx_leg3 * t128
-            + minus_g2_wz_leg3 * t89;
-        let t377 = minus_g2_vy_leg3 * t141 - minus_g2_vx_leg3 * t139;
-        let t378 = 2.0 * t377;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t387 = g2_vx_leg4 * t106 - g2_vy_leg4 * t116 + g2_wz_leg4 * t84;
-        let t392 = t255 * t215 + t247 * t218 + 0.0784 * t279;
-        let rate_dot_2_leg4 = t250 * (t392 + t273 * t281);
-        let t401 = g2_vx_leg4 * t128 - g2_vy_leg4 * t133 - g2_wz_leg4 * t89;
-        let t405 = g2_vx_leg4 * t139 - g2_vy_leg4 * t141;
-        let t406 = 2.0 * t405;
-        let t409 = 3.5714285714285716 * t184;
-        let t413 = 3.5714285714285716 * t204;
-        let t418 = 3.5714285714285716 * t230;
-        let t425 = 3.5714285714285716 * t392;
-        let t427 = 3.5714285714285716 * t275;
-        let t437 = rate_1_leg1 + minus_rate_2_leg1;
-        let t438 = t313 - 1.0;
-        let t441 = minus_rate_1_leg2 + rate_2_leg2;
-        let t443 = t350 - 1.0;
-        let t445 = rate_1_leg3 + minus_rate_2_leg3;
-        let t448 = t378 - 1.0;
-        let t450 = minus_rate_1_leg4 + rate_2_leg4;
-        let t451 = t387 - t264;
-        let t453 = t401 - t290;
-        let t456 = 2.0 * (t405 - t294);
-        let t468 = minus_rate_2_leg1 + twist[2];
-        let t469 = t84 - t313;
-        let t471 = t327 + t89;
-        let t474 = twist[2] - rate_2_leg2;
-        let t475 = t84 - t336;
-        let t477 = t350 + t89;
-        let t480 = minus_rate_2_leg3 + twist[2];
-        let t481 = t84 - t359;
-        let t483 = t373 + t89;
-        let t485 = t94 - t378;
-        let t487 = twist[2] - rate_2_leg4;
-        let t488 = t84 - t387;
-        let t490 = t401 + t89;
-        let t492 = t94 - t406;
+        let t322 = g2_vx_leg2 * t101 - g2_vy_leg2 * t91 - minus_g2_wz_leg2 * t76;
+        let t327 = t16 * t160 + t41 * t162 + 0.0784 * t198;
+        let rate_dot_2_leg2 = t19 * (t327 + t192 * t200);
+        let t336 = g2_vx_leg2 * t125 - g2_vy_leg2 * t120 + minus_g2_wz_leg2 * t81;
+        let t344 = 2.0 * (minus_g2_vy_leg3 * t130 + minus_g2_vx_leg3 * t132);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * t344;
+        let t347 = minus_g2_vy_leg3 * t91 - minus_g2_vx_leg3 * t101
+            - minus_g2_wz_leg3 * t76;
+        let t352 = t46 * t204 + t33 * t206 + 0.0784 * t222;
+        let minus_rate_dot_2_leg3 = t36 * (t352 + t216 * t224);
+        let t361 = minus_g2_vy_leg3 * t120 - minus_g2_vx_leg3 * t125
+            + minus_g2_wz_leg3 * t81;
+        let t369 = g2_vx_leg4 * t132 + g2_vy_leg4 * t130;
+        let t370 = 2.0 * t369;
+        let g2_wz_leg4 = g1_wz_leg3 * t370;
+        let t373 = g2_vx_leg4 * t101 - g2_vy_leg4 * t91 + g2_wz_leg4 * t76;
+        let t378 = t243 * t204 + t235 * t206 + 0.0784 * t269;
+        let rate_dot_2_leg4 = t238 * (t378 + t263 * t271);
+        let t387 = g2_vx_leg4 * t125 - g2_vy_leg4 * t120 - g2_wz_leg4 * t81;
+        let t391 = 3.5714285714285716 * t174;
+        let t395 = 3.5714285714285716 * t194;
+        let t400 = 3.5714285714285716 * t218;
+        let t406 = 3.5714285714285716 * t378;
+        let t408 = 3.5714285714285716 * t265;
+        let t418 = rate_1_leg1 + minus_rate_2_leg1;
+        let t419 = t299 - 1.0;
+        let t422 = minus_rate_1_leg2 + rate_2_leg2;
+        let t424 = t336 - 1.0;
+        let t426 = rate_1_leg3 + minus_rate_2_leg3;
+        let t429 = t344 + 1.0;
+        let t431 = minus_rate_1_leg4 + rate_2_leg4;
+        let t432 = t373 - t254;
+        let t434 = t387 - t280;
+        let t436 = t251 + t370;
+        let t448 = minus_rate_2_leg1 + twist[2];
+        let t449 = t76 - t299;
+        let t451 = t313 + t81;
+        let t454 = twist[2] - rate_2_leg2;
+        let t455 = t76 - t322;
+        let t457 = t336 + t81;
+        let t460 = minus_rate_2_leg3 + twist[2];
+        let t461 = t76 - t347;
+        let t463 = t361 + t81;
+        let t465 = t83 + t344;
+        let t467 = twist[2] - rate_2_leg4;
+        let t468 = t76 - t373;
+        let t470 = t387 + t81;
+        let t472 = t83 - t370;
         Ok([
             [
-                t84 * acceleration[2], t84 * t98 - (t106 * t111 + t116 * t121),
-                t116 * t111 - t106 * t121 - t84 * t150,
-                t106 * acceleration[0] - t116 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
-                -(t264 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0, -(t264 * minus_rate_1_leg4),
+                t76 * acceleration[2], t91 * t96 - t101 * t106 + t76 * t111,
+                t101 * t96 + t91 * t106 - t76 * t142,
+                t101 * acceleration[0] - t91 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
+                -(t254 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0, -(t254 * minus_rate_1_leg4),
                 ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                -::overact::math::signed(t264, minus_rate_1_leg4), 1.0, 0.0, 0.0, t264,
+                -::overact::math::signed(t254, minus_rate_1_leg4), 1.0, 0.0, 0.0, t254,
+                -(t299 * minus_rate_dot_2_leg1), t322 * rate_dot_2_leg2,
+                -(t347 * minus_rate_dot_2_leg3), t373 * rate_dot_2_leg4,
+                3.5714285714285716 * t304 - t299 * t391, -(t322 * t395), -(t347 * t400),
+                t254 * t406 - t373 * t408, -(t418 * t419), t322 * t422, -(t347 * t426), t431 * t432,
+                -::overact::math::signed(t419, t418), ::overact::math::signed(t322, t422),
+                -::overact::math::signed(t347, t426), ::overact::math::signed(t432, t431), t419,
+                t322, t347, t432, t448 * t449, t454 * t455, t460 * t461, t467 * t468,
+                ::overact::math::signed(t449, t448), ::overact::math::signed(t455, t454),
+                ::overact::math::signed(t461, t460), ::overact::math::signed(t468, t467), t449,
+            ],
+            [
+                -(t81 * acceleration[2]), t120 * t96 - t125 * t106 - t81 * t111,
+                t125 * t96 + t120 * t106 + t81 * t142,
+                t125 * acceleration[0] - t120 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                -(t280 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
+                -(t280 * minus_rate_1_leg4), 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                -::overact::math::signed(t280, minus_rate_1_leg4), 0.0, 1.0, 0.0, t280,
                 -(t313 * minus_rate_dot_2_leg1), t336 * rate_dot_2_leg2,
-                -(t359 * minus_rate_dot_2_leg3), t387 * rate_dot_2_leg4,
-                3.5714285714285716 * t318 - t313 * t409, -(t336 * t413), -(t359 * t418),
-                t264 * t425 - t387 * t427, -(t437 * t438), t336 * t441, -(t359 * t445), t450 * t451,
-                -::overact::math::signed(t438, t437), ::overact::math::signed(t336, t441),
-                -::overact::math::signed(t359, t445), ::overact::math::signed(t451, t450), t438,
-                t336, t359, t451, t468 * t469, t474 * t475, t480 * t481, t487 * t488,
-                ::overact::math::signed(t469, t468), ::overact::math::signed(t475, t474),
-                ::overact::math::signed(t481, t480), ::overact::math::signed(t488, t487), t469,
+                -(t361 * minus_rate_dot_2_leg3), t387 * rate_dot_2_leg4, -(t313 * t391),
+                3.5714285714285716 * t327 - t336 * t395, -(t361 * t400), t280 * t406 - t387 * t408,
+                -(t313 * t418), t422 * t424, -(t361 * t426), t431 * t434,
+                -::overact::math::signed(t313, t418), ::overact::math::signed(t424, t422),
+                -::overact::math::signed(t361, t426), ::overact::math::signed(t434, t431), t313,
+                t424, t361, t434, -(t448 * t451), -(t454 * t457), -(t460 * t463), -(t467 * t470),
+                -::overact::math::signed(t451, t448), -::overact::math::signed(t457, t454),
+                -::overact::math::signed(t463, t460), -::overact::math::signed(t470, t467), -t451,
             ],
             [
-                -(t89 * acceleration[2]), -(t128 * t111 + t133 * t121 + t89 * t98),
-                t133 * t111 - t128 * t121 + t89 * t150,
-                t128 * acceleration[0] - t133 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
-                -(t290 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
-                -(t290 * minus_rate_1_leg4), 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                -::overact::math::signed(t290, minus_rate_1_leg4), 0.0, 1.0, 0.0, t290,
-                -(t327 * minus_rate_dot_2_leg1), t350 * rate_dot_2_leg2,
-                -(t373 * minus_rate_dot_2_leg3), t401 * rate_dot_2_leg4, -(t327 * t409),
-                3.5714285714285716 * t341 - t350 * t413, -(t373 * t418), t290 * t425 - t401 * t427,
-                -(t327 * t437), t441 * t443, -(t373 * t445), t450 * t453,
-                -::overact::math::signed(t327, t437), ::overact::math::signed(t443, t441),
-                -::overact::math::signed(t373, t445), ::overact::math::signed(t453, t450), t327,
-                t443, t373, t453, -(t468 * t471), -(t474 * t477), -(t480 * t483), -(t487 * t490),
-                -::overact::math::signed(t471, t468), -::overact::math::signed(t477, t474),
-                -::overact::math::signed(t483, t480), -::overact::math::signed(t490, t487), -t471,
-            ],
-            [
-                t95, t94 * t98 - (t139 * t111 + t141 * t121), -(0.11 * t95 + t159), 0.11 * t159,
-                0.0, 0.0, rate_dot_1_leg3, -(t295 * minus_rate_dot_1_leg4), 0.0, 0.0, rate_1_leg3,
-                -(t295 * minus_rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                -::overact::math::signed(t295, minus_rate_1_leg4), 0.0, 0.0, 1.0, t295, 0.0, 0.0,
-                -(t378 * minus_rate_dot_2_leg3), t406 * rate_dot_2_leg4, 0.0, 0.0,
-                3.5714285714285716 * t364 - 7.142857142857143 * (t377 * t230),
-                7.142857142857143 * (t294 * t392 - t405 * t275), 0.0, 0.0, -(t445 * t448),
-                t450 * t456, 0.0, 0.0, -::overact::math::signed(t448, t445),
-                ::overact::math::signed(t456, t450), 0.0, 0.0, t448, t456, t94 * t468, t94 * t474,
-                t480 * t485, t487 * t492, ::overact::math::signed(t94, t468),
-                ::overact::math::signed(t94, t474), ::overact::math::signed(t485, t480),
-                ::overact::math::signed(t492, t487), t94,
+                t84, t83 * t111 - (t130 * t96 + t132 * t106), -(0.11 * t84 + t151), 0.11 * t151,
+                0.0, 0.0, rate_dot_1_leg3, t251 * minus_rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
+                t251 * minus_rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(t251, minus_rate_1_leg4), 0.0, 0.0, 1.0, -t251, 0.0, 0.0,
+                t344 * minus_rate_dot_2_leg3, t370 * rate_dot_2_leg4, 0.0, 0.0,
+                3.5714285714285716 * t352 + t400 * t344,
+                -(7.142857142857143 * (t250 * t378 + t369 * t265)), 0.0, 0.0, t426 * t429,
+                t431 * t436, 0.0, 0.0, ::overact::math::signed(t429, t426),
+                ::overact::math::signed(t436, t431), 0.0, 0.0, -t429, t436, t83 * t448, t83 * t454,
+                t460 * t465, t467 * t472, ::overact::math::signed(t83, t448),
+                ::overact::math::signed(t83, t454), ::overact::math::signed(t465, t460),
+                ::overact::math::signed(t472, t467), t83,
             ],
         ])
     }
@@ -4393,7 +4362,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 422 operations (141 additions, 276 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 358 intermediates.
+    /// 405 operations (132 additions, 268 multiplications, 5 divisions), 0 square roots, 9 trigonometric pairs, 28 signs, 341 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4445,174 +4414,170 @@ impl DualV {
         let t72 = t66 * t69;
         let t77 = (g1_vy_leg1 * g1_vx_leg2 - g1_vx_leg1 * g1_vy_leg2) * t69;
         let t78 = t77 * acceleration[2];
-        let t81 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t86 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t69;
-        let t87 = t46 * twist[2];
-        let t88 = twist[2] * t87;
-        let t89 = t43 * acceleration[2];
-        let t91 = 9.090909090909092 * (t88 + t89);
-        let t96 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t69;
-        let t97 = t46 * acceleration[2];
-        let t98 = t43 * twist[2];
-        let t99 = twist[2] * t98;
-        let t101 = 9.090909090909092 * (t97 - t99);
+        let t82 = (g1_vx_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vx_leg3) * t69;
+        let t83 = t43 * twist[2];
+        let t86 = twist[2] * t83 - t46 * acceleration[2];
+        let t87 = 9.090909090909092 * t86;
+        let t92 = (g1_vy_leg2 * g1_wz_leg3 + minus_g1_wz_leg2 * g1_vy_leg3) * t69;
+        let t93 = t46 * twist[2];
+        let t96 = twist[2] * t93 + t43 * acceleration[2];
+        let t97 = 9.090909090909092 * t96;
+        let t102 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t105 = t58 * t69;
         let t107 = t54 * t69;
-        let t115 = (g1_vy_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vy_leg2) * t69;
-        let t120 = (g1_vx_leg1 * minus_g1_wz_leg2 - minus_g1_wz_leg1 * g1_vx_leg2) * t69;
-        let t130 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t139 = t77 * t130;
-        let t149 = acceleration[0] - t97 + t99;
-        let t152 = acceleration[1] - t89 - t88;
+        let t112 = t46 * t77;
+        let t114 = t43 * t77;
+        let t124 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t133 = t77 * t124;
+        let t142 = t86 + acceleration[0];
+        let t144 = acceleration[1] - t96;
         let minus_g2_vx_leg1 = c1_leg1 * t39;
-        let t156 = twist[0] - t87;
+        let t148 = twist[0] - t93;
         let minus_g2_vy_leg1 = s1_leg1 * t39;
-        let t159 = twist[1] - t98;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t156 + minus_g2_vy_leg1 * t159;
-        let t162 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t164 = c12_leg1 * t149 + s12_leg1 * t152 + 0.28 * t162;
-        let rate_1_leg1 = g1_vx_leg1 * t156 + g1_vy_leg1 * t159;
-        let t168 = rate_1_leg1 * rate_1_leg1;
-        let t169 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t39 * (t164 + t168 * t169);
+        let t151 = twist[1] - t83;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t148 + minus_g2_vy_leg1 * t151;
+        let t154 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t156 = c12_leg1 * t142 + s12_leg1 * t144 + 0.28 * t154;
+        let rate_1_leg1 = g1_vx_leg1 * t148 + g1_vy_leg1 * t151;
+        let t160 = rate_1_leg1 * rate_1_leg1;
+        let t161 = 0.28 * c2_leg1;
+        let rate_dot_1_leg1 = t39 * (t156 + t160 * t161);
         let minus_g2_vx_leg2 = c1_leg2 * t10;
         let minus_g2_vy_leg2 = s1_leg2 * t10;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t156 + minus_g2_vy_leg2 * t159;
-        let t181 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t183 = c12_leg2 * t149 + s12_leg2 * t152 + 0.28 * t181;
-        let rate_1_leg2 = g1_vx_leg2 * t156 + g1_vy_leg2 * t159;
-        let t187 = rate_1_leg2 * rate_1_leg2;
-        let t188 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t10 * (t183 + t187 * t188);
-        let t193 = acceleration[0] + t97 - t99;
-        let t196 = acceleration[1] + t89 + t88;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t148 + minus_g2_vy_leg2 * t151;
+        let t173 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t175 = c12_leg2 * t142 + s12_leg2 * t144 + 0.28 * t173;
+        let rate_1_leg2 = g1_vx_leg2 * t148 + g1_vy_leg2 * t151;
+        let t179 = rate_1_leg2 * rate_1_leg2;
+        let t180 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t10 * (t175 + t179 * t180);
+        let t184 = acceleration[0] - t86;
+        let t186 = t96 + acceleration[1];
         let minus_g2_vx_leg3 = c1_leg3 * t22;
-        let t200 = twist[0] + t87;
+        let t190 = twist[0] + t93;
         let minus_g2_vy_leg3 = s1_leg3 * t22;
-        let t203 = twist[1] + t98;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t200 + minus_g2_vy_leg3 * t203;
-        let t206 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t208 = c12_leg3 * t193 + s12_leg3 * t196 + 0.28 * t206;
-        let rate_1_leg3 = g1_vx_leg3 * t200 + g1_vy_leg3 * t203;
-        let t212 = rate_1_leg3 * rate_1_leg3;
-        let t213 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t22 * (t208 + t212 * t213);
+        let t193 = twist[1] + t83;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t190 + minus_g2_vy_leg3 * t193;
+        let t196 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t198 = c12_leg3 * t184 + s12_leg3 * t186 + 0.28 * t196;
+        let rate_1_leg3 = g1_vx_leg3 * t190 + g1_vy_leg3 * t193;
+        let t202 = rate_1_leg3 * rate_1_leg3;
+        let t203 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t22 * (t198 + t202 * t203);
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t227 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t227;
-        let g1_vy_leg4 = s12_leg4 * t227;
-        let g1_wz_leg4 = t43 * g1_vy_leg4 + t46 * g1_vx_leg4;
-        let t237 = g1_vx_leg4 * t86 - g1_vy_leg4 * t96 + g1_wz_leg4 * t70;
-        let minus_g2_vx_leg4 = c1_leg4 * t227;
-        let minus_g2_vy_leg4 = s1_leg4 * t227;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t200 + minus_g2_vy_leg4 * t203;
-        let t246 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t248 = c12_leg4 * t193 + s12_leg4 * t196 + 0.28 * t246;
-        let rate_1_leg4 = g1_vx_leg4 * t200 + g1_vy_leg4 * t203;
-        let t252 = rate_1_leg4 * rate_1_leg4;
-        let t253 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t227 * (t248 + t252 * t253);
-        let t262 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 + g1_wz_leg4 * t72;
-        let t266 = g1_vy_leg4 * t120 - g1_vx_leg4 * t115;
-        let t267 = 2.0 * t266;
+        let t217 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t217;
+        let g1_vy_leg4 = s12_leg4 * t217;
+        let t226 = 2.0 * (g1_vy_leg4 * t114 + g1_vx_leg4 * t112);
+        let minus_g1_wz_leg4 = g1_wz_leg3 * t226;
+        let t229 = g1_vx_leg4 * t92 - g1_vy_leg4 * t82 - minus_g1_wz_leg4 * t70;
+        let minus_g2_vx_leg4 = c1_leg4 * t217;
+        let minus_g2_vy_leg4 = s1_leg4 * t217;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t190 + minus_g2_vy_leg4 * t193;
+        let t238 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t240 = c12_leg4 * t184 + s12_leg4 * t186 + 0.28 * t238;
+        let rate_1_leg4 = g1_vx_leg4 * t190 + g1_vy_leg4 * t193;
+        let t244 = rate_1_leg4 * rate_1_leg4;
+        let t245 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t217 * (t240 + t244 * t245);
+        let t254 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 - minus_g1_wz_leg4 * t72;
         let g2_wz_leg1 = minus_g2_vy_leg1 * t43 + minus_g2_vx_leg1 * t46;
-        let t285 = minus_g2_vy_leg1 * t96 - minus_g2_vx_leg1 * t86 + g2_wz_leg1 * t70;
-        let t290 = c1_leg1 * t149 + s1_leg1 * t152 + 0.28 * t168;
-        let minus_rate_dot_2_leg1 = t39 * (t290 + t162 * t169);
-        let t299 = minus_g2_vx_leg1 * t105 - minus_g2_vy_leg1 * t107 + g2_wz_leg1 * t72;
+        let t273 = minus_g2_vy_leg1 * t82 - minus_g2_vx_leg1 * t92 + g2_wz_leg1 * t70;
+        let t278 = c1_leg1 * t142 + s1_leg1 * t144 + 0.28 * t160;
+        let minus_rate_dot_2_leg1 = t39 * (t278 + t154 * t161);
+        let t287 = minus_g2_vx_leg1 * t105 - minus_g2_vy_leg1 * t107 + g2_wz_leg1 * t72;
         let g2_wz_leg2 = t43 * minus_g2_vy_leg2 + t46 * minus_g2_vx_leg2;
-        let t308 = minus_g2_vy_leg2 * t96 - minus_g2_vx_leg2 * t86 + g2_wz_leg2 * t70;
-        let t313 = c1_leg2 * t149 + s1_leg2 * t152 + 0.28 * t187;
-        let minus_rate_dot_2_leg2 = t10 * (t313 + t181 * t188);
-        let t322 = minus_g2_vx_leg2 * t105 - minus_g2_vy_leg2 * t107 + g2_wz_leg2 * t72;
-        let minus_g2_wz_leg3 = t43 * minus_g2_vy_leg3 + t46 * minus_g2_vx_leg3;
-        let t331 = minus_g2_vy_leg3 * t96 - minus_g2_vx_leg3 * t86
-            - minus_g2_wz_leg3 * t70;
-        let t336 = c1_leg3 * t193 + s1_leg3 * t196 + 0.28 * t212;
-        let minus_rate_dot_2_leg3 = t22 * (t336 + t206 * t213);
-        let t345 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
-            - minus_g2_wz_leg3 * t72;
-        let t350 = 2.0 * (minus_g2_vx_leg3 * t115 - minus_g2_vy_leg3 * t120);
-        let minus_g2_wz_leg4 = t43 * minus_g2_vy_leg4 + t46 * minus_g2_vx_leg4;
-        let t359 = minus_g2_vy_leg4 * t96 - minus_g2_vx_leg4 * t86
-            - minus_g2_wz_leg4 * t70;
-        let t364 = c1_leg4 * t193 + s1_leg4 * t196 + 0.28 * t252;
-        let minus_rate_dot_2_leg4 = t227 * (t364 + t246 * t253);
-        let t373 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
-            - minus_g2_wz_leg4 * t72;
-        let t377 = minus_g2_vx_leg4 * t115 - minus_g2_vy_leg4 * t120;
-        let t378 = 2.0 * t377;
-        let t399 = rate_1_leg1 + minus_rate_2_leg1;
-        let t400 = t285 - 1.0;
-        let t403 = rate_1_leg2 + minus_rate_2_leg2;
-        let t405 = t322 - 1.0;
-        let t407 = rate_1_leg3 + minus_rate_2_leg3;
-        let t410 = t350 - 1.0;
-        let t412 = rate_1_leg4 + minus_rate_2_leg4;
-        let t413 = t359 - t237;
-        let t415 = t373 - t262;
-        let t418 = 2.0 * (t377 - t266);
-        let t430 = minus_rate_2_leg1 + twist[2];
-        let t431 = t70 - t285;
-        let t433 = t72 - t299;
-        let t436 = minus_rate_2_leg2 + twist[2];
-        let t437 = t70 - t308;
-        let t439 = t72 - t322;
-        let t442 = minus_rate_2_leg3 + twist[2];
-        let t443 = t70 - t331;
-        let t445 = t72 - t345;
-        let t447 = t350 + t77;
-        let t449 = minus_rate_2_leg4 + twist[2];
-        let t450 = t70 - t359;
-        let t452 = t72 - t373;
-        let t454 = t378 + t77;
+        let t296 = minus_g2_vy_leg2 * t82 - minus_g2_vx_leg2 * t92 + g2_wz_leg2 * t70;
+        let t301 = c1_leg2 * t142 + s1_leg2 * t144 + 0.28 * t179;
+        let minus_rate_dot_2_leg2 = t10 * (t301 + t173 * t180);
+        let t310 = minus_g2_vx_leg2 * t105 - minus_g2_vy_leg2 * t107 + g2_wz_leg2 * t72;
+        let t318 = 2.0 * (minus_g2_vx_leg3 * t112 + minus_g2_vy_leg3 * t114);
+        let minus_minus_g2_wz_leg3 = g1_wz_leg3 * t318;
+        let t321 = minus_g2_vy_leg3 * t82 - minus_g2_vx_leg3 * t92
+            + minus_minus_g2_wz_leg3 * t70;
+        let t326 = c1_leg3 * t184 + s1_leg3 * t186 + 0.28 * t202;
+        let minus_rate_dot_2_leg3 = t22 * (t326 + t196 * t203);
+        let t335 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
+            + minus_minus_g2_wz_leg3 * t72;
+        let t344 = 2.0 * (minus_g2_vx_leg4 * t112 + minus_g2_vy_leg4 * t114);
+        let minus_minus_g2_wz_leg4 = g1_wz_leg3 * t344;
+        let t347 = minus_g2_vy_leg4 * t82 - minus_g2_vx_leg4 * t92
+            + minus_minus_g2_wz_leg4 * t70;
+        let t352 = c1_leg4 * t184 + s1_leg4 * t186 + 0.28 * t244;
+        let minus_rate_dot_2_leg4 = t217 * (t352 + t238 * t245);
+        let t361 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
+            + minus_minus_g2_wz_leg4 * t72;
+        let t383 = rate_1_leg1 + minus_rate_2_leg1;
+        let t384 = t273 - 1.0;
+        let t387 = rate_1_leg2 + minus_rate_2_leg2;
+        let t389 = t310 - 1.0;
+        let t391 = rate_1_leg3 + minus_rate_2_leg3;
+        let t394 = t318 - 1.0;
+        let t396 = rate_1_leg4 + minus_rate_2_leg4;
+        let t397 = t347 - t229;
+        let t399 = t361 - t254;
+        let t401 = t226 + t344;
+        let t413 = minus_rate_2_leg1 + twist[2];
+        let t414 = t70 - t273;
+        let t416 = t72 - t287;
+        let t419 = minus_rate_2_leg2 + twist[2];
+        let t420 = t70 - t296;
+        let t422 = t72 - t310;
+        let t425 = minus_rate_2_leg3 + twist[2];
+        let t426 = t70 - t321;
+        let t428 = t72 - t335;
+        let t430 = t318 + t77;
+        let t432 = minus_rate_2_leg4 + twist[2];
+        let t433 = t70 - t347;
+        let t435 = t72 - t361;
+        let t437 = t344 + t77;
         Ok([
             [
-                t70 * acceleration[2], t70 * t81 - (t86 * t91 + t96 * t101),
-                t96 * t91 - t86 * t101 - t70 * t130, t86 * acceleration[0] - t96 * acceleration[1],
-                rate_dot_1_leg1, 0.0, 0.0, t237 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
-                t237 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t237, rate_1_leg4), 1.0, 0.0, 0.0, t237,
-                -(t285 * minus_rate_dot_2_leg1), -(t308 * minus_rate_dot_2_leg2),
-                -(t331 * minus_rate_dot_2_leg3), -(t359 * minus_rate_dot_2_leg4),
-                t290 - t285 * t164, -(t308 * t183), -(t331 * t208), t237 * t364 - t359 * t248,
-                -(t399 * t400), -(t308 * t403), -(t331 * t407), -(t412 * t413),
-                -::overact::math::signed(t400, t399), -::overact::math::signed(t308, t403),
-                -::overact::math::signed(t331, t407), -::overact::math::signed(t413, t412), t400,
-                t308, t331, t413, t430 * t431, t436 * t437, t442 * t443, t449 * t450,
-                ::overact::math::signed(t431, t430), ::overact::math::signed(t437, t436),
-                ::overact::math::signed(t443, t442), ::overact::math::signed(t450, t449), t431,
+                t70 * acceleration[2], t82 * t87 - t92 * t97 + t70 * t102,
+                t92 * t87 + t82 * t97 - t70 * t124, t92 * acceleration[0] - t82 * acceleration[1],
+                rate_dot_1_leg1, 0.0, 0.0, t229 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
+                t229 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t229, rate_1_leg4), 1.0, 0.0, 0.0, t229,
+                -(t273 * minus_rate_dot_2_leg1), -(t296 * minus_rate_dot_2_leg2),
+                -(t321 * minus_rate_dot_2_leg3), -(t347 * minus_rate_dot_2_leg4),
+                t278 - t273 * t156, -(t296 * t175), -(t321 * t198), t229 * t352 - t347 * t240,
+                -(t383 * t384), -(t296 * t387), -(t321 * t391), -(t396 * t397),
+                -::overact::math::signed(t384, t383), -::overact::math::signed(t296, t387),
+                -::overact::math::signed(t321, t391), -::overact::math::signed(t397, t396), t384,
+                t296, t321, t397, t413 * t414, t419 * t420, t425 * t426, t432 * t433,
+                ::overact::math::signed(t414, t413), ::overact::math::signed(t420, t419),
+                ::overact::math::signed(t426, t425), ::overact::math::signed(t433, t432), t414,
             ],
             [
-                t72 * acceleration[2], t105 * t91 + t107 * t101 + t72 * t81,
-                t105 * t101 - t107 * t91 - t72 * t130,
+                t72 * acceleration[2], t105 * t97 - t107 * t87 + t72 * t102,
+                -(t105 * t87 + t107 * t97 + t72 * t124),
                 t107 * acceleration[1] - t105 * acceleration[0], 0.0, rate_dot_1_leg2, 0.0,
-                t262 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t262 * rate_1_leg4, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t262, rate_1_leg4),
-                0.0, 1.0, 0.0, t262, -(t299 * minus_rate_dot_2_leg1),
-                -(t322 * minus_rate_dot_2_leg2), -(t345 * minus_rate_dot_2_leg3),
-                -(t373 * minus_rate_dot_2_leg4), -(t299 * t164), t313 - t322 * t183, -(t345 * t208),
-                t262 * t364 - t373 * t248, -(t299 * t399), -(t403 * t405), -(t345 * t407),
-                -(t412 * t415), -::overact::math::signed(t299, t399),
-                -::overact::math::signed(t405, t403), -::overact::math::signed(t345, t407),
-                -::overact::math::signed(t415, t412), t299, t405, t345, t415, t430 * t433,
-                t436 * t439, t442 * t445, t449 * t452, ::overact::math::signed(t433, t430),
-                ::overact::math::signed(t439, t436), ::overact::math::signed(t445, t442),
-                ::overact::math::signed(t452, t449), t433,
+                t254 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t254 * rate_1_leg4, 0.0,
+                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t254, rate_1_leg4),
+                0.0, 1.0, 0.0, t254, -(t287 * minus_rate_dot_2_leg1),
+                -(t310 * minus_rate_dot_2_leg2), -(t335 * minus_rate_dot_2_leg3),
+                -(t361 * minus_rate_dot_2_leg4), -(t287 * t156), t301 - t310 * t175, -(t335 * t198),
+                t254 * t352 - t361 * t240, -(t287 * t383), -(t387 * t389), -(t335 * t391),
+                -(t396 * t399), -::overact::math::signed(t287, t383),
+                -::overact::math::signed(t389, t387), -::overact::math::signed(t335, t391),
+                -::overact::math::signed(t399, t396), t287, t389, t335, t399, t413 * t416,
+                t419 * t422, t425 * t428, t432 * t435, ::overact::math::signed(t416, t413),
+                ::overact::math::signed(t422, t419), ::overact::math::signed(t428, t425),
+                ::overact::math::signed(t435, t432), t416,
             ],
             [
-                -t78, t115 * t91 + t120 * t101 - t77 * t81, 0.11 * t78 + t139, -(0.11 * t139), 0.0,
-                0.0, rate_dot_1_leg3, t267 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
-                t267 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t267, rate_1_leg4), 0.0, 0.0, 1.0, t267, 0.0, 0.0,
-                -(t350 * minus_rate_dot_2_leg3), -(t378 * minus_rate_dot_2_leg4), 0.0, 0.0,
-                t336 - t350 * t208, t267 * t364 - t378 * t248, 0.0, 0.0, -(t407 * t410),
-                -(t412 * t418), 0.0, 0.0, -::overact::math::signed(t410, t407),
-                -::overact::math::signed(t418, t412), 0.0, 0.0, t410, t418, -(t77 * t430),
-                -(t77 * t436), -(t442 * t447), -(t449 * t454), -::overact::math::signed(t77, t430),
-                -::overact::math::signed(t77, t436), -::overact::math::signed(t447, t442),
-                -::overact::math::signed(t454, t449), -t77,
+                -t78, t112 * t97 + t114 * t87 - t77 * t102, 0.11 * t78 + t133, -(0.11 * t133), 0.0,
+                0.0, rate_dot_1_leg3, -(t226 * rate_dot_1_leg4), 0.0, 0.0, rate_1_leg3,
+                -(t226 * rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                -::overact::math::signed(t226, rate_1_leg4), 0.0, 0.0, 1.0, -t226, 0.0, 0.0,
+                -(t318 * minus_rate_dot_2_leg3), -(t344 * minus_rate_dot_2_leg4), 0.0, 0.0,
+                t326 - t318 * t198, -(t226 * t352 + t344 * t240), 0.0, 0.0, -(t391 * t394),
+                -(t396 * t401), 0.0, 0.0, -::overact::math::signed(t394, t391),
+                -::overact::math::signed(t401, t396), 0.0, 0.0, t394, t401, -(t77 * t413),
+                -(t77 * t419), -(t425 * t430), -(t432 * t437), -::overact::math::signed(t77, t413),
+                -::overact::math::signed(t77, t419), -::overact::math::signed(t430, t425),
+                -::overact::math::signed(t437, t432), -t77,
             ],
         ])
     }
@@ -4627,7 +4592,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 628 operations (238 additions, 378 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 552 intermediates.
+    /// 608 operations (228 additions, 368 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 532 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4677,46 +4642,50 @@ impl DualV {
         let t46 = 0.5 * t25 + t22 * t31;
         let t47 = t25 - t46;
         let g1_vx_leg3 = t47 * t36;
-        let t51 = t3 - 0.3950502153918333;
-        let t53 = t51 * t51 + t10;
-        let t55 = 0.0784 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg1")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = t39 - t51 * t56;
-        let t59 = t8 - t58;
-        let t60 = t53 * t56;
-        ::overact::guard::leg(t60, 0.07839913810297301, "leg1")?;
-        let t61 = 1.0 / t60;
-        let g1_vy_leg1 = t59 * t61;
-        let t66 = 0.5 * t51 + t8 * t56;
-        let t67 = t51 - t66;
-        let g1_vx_leg1 = t67 * t61;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let t54 = t3 - 0.3950502153918333;
+        let t57 = t54 * t54 + t10;
+        let t59 = 0.0784 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg1")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.5 * t54 + t8 * t60;
+        let t63 = t54 - t62;
+        let t64 = t57 * t60;
+        ::overact::guard::leg(t64, 0.07839913810297301, "leg1")?;
+        let t65 = 1.0 / t64;
+        let g1_vx_leg1 = t63 * t65;
+        let t69 = t39 - t54 * t60;
+        let t70 = t8 - t69;
+        let g1_vy_leg1 = t70 * t65;
+        let t73 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t74 = g1_wz_leg3 * t73;
+        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
+        let t75 = 0.5 / t74;
+        let t76 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t75;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t76 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t80 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t82 = g1_vx_leg3 * t76 - g1_vy_leg3 * t80;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        let t83 = 0.5 / t82;
-        let t84 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t83;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t93 = t24 - 0.3950502153918333;
-        let t95 = t93 * t93 + t27;
-        let t97 = 0.0784 / t95 - 0.25;
-        ::overact::guard::reach(t97, "leg4")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let t100 = t23 + t93 * t98;
-        let t101 = t22 - t100;
-        let t102 = t95 * t98;
-        ::overact::guard::leg(t102, 0.07839913810297301, "leg4")?;
-        let t103 = 1.0 / t102;
-        let minus_g1_vy_leg4 = t101 * t103;
-        let t108 = 0.5 * t93 - t22 * t98;
-        let t109 = t93 - t108;
-        let minus_g1_vx_leg4 = t109 * t103;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t88 = t24 - 0.3950502153918333;
+        let t90 = t88 * t88 + t27;
+        let t92 = 0.0784 / t90 - 0.25;
+        ::overact::guard::reach(t92, "leg4")?;
+        let t93 = ::overact::math::sqrt(t92);
+        let t95 = t23 + t88 * t93;
+        let t96 = t22 - t95;
+        let t97 = t90 * t93;
+        ::overact::guard::leg(t97, 0.07839913810297301, "leg4")?;
+        let t98 = 1.0 / t97;
+        let minus_g1_vy_leg4 = t96 * t98;
+        let t100 = t73 * t75;
+        let t101 = t2 * t100;
+        let t105 = 0.5 * t88 - t22 * t93;
+        let t106 = t88 - t105;
+        let minus_g1_vx_leg4 = t106 * t98;
+        let t108 = t6 * t100;
+        let t110 = minus_g1_vy_leg4 * t101 + minus_g1_vx_leg4 * t108;
+        let t111 = 2.0 * t110;
+        let minus_g1_wz_leg4 = g1_wz_leg3 * t111;
         let t121 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
@@ -4777,16 +4746,16 @@ impl DualV {
         let t223 = t220 * t222;
         let rate_dot_1_leg2 = t19 * (t42 * t193 - t17 * t196 - t215 - t223);
         let t226 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t66 * t61;
-        let minus_g2_vy_leg1 = t58 * t61;
+        let minus_g2_vx_leg1 = t62 * t65;
+        let minus_g2_vy_leg1 = t69 * t65;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t208 + minus_g2_vy_leg1 * t211;
         let t236 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t237 = 0.0784 * t236;
         let rate_1_leg1 = g1_vx_leg1 * t208 + g1_vy_leg1 * t211;
         let t242 = rate_1_leg1 * rate_1_leg1;
-        let t244 = 0.5 * (t53 - 0.1568);
+        let t244 = 0.5 * (t57 - 0.1568);
         let t245 = t242 * t244;
-        let minus_rate_dot_1_leg1 = t61 * (t59 * t193 - t67 * t196 - t237 - t245);
+        let minus_rate_dot_1_leg1 = t65 * (t70 * t193 - t63 * t196 - t237 - t245);
         let t248 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
         let minus_g2_vx_leg3 = t46 * t36;
         let t255 = t207 + t192;
@@ -4801,16 +4770,16 @@ impl DualV {
         let t270 = t267 * t269;
         let minus_rate_dot_1_leg3 = t36 * (t47 * t196 - t34 * t193 - t262 - t270);
         let t273 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t108 * t103;
-        let g2_vy_leg4 = t100 * t103;
+        let g2_vx_leg4 = t105 * t98;
+        let g2_vy_leg4 = t95 * t98;
         let rate_2_leg4 = g2_vx_leg4 * t255 + g2_vy_leg4 * t258;
         let t284 = rate_2_leg4 * rate_2_leg4;
         let t285 = 0.0784 * t284;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * t255 + minus_g1_vy_leg4 * t258;
         let t290 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t292 = 0.5 * (t95 - 0.1568);
+        let t292 = 0.5 * (t90 - 0.1568);
         let t293 = t290 * t292;
-        let rate_dot_1_leg4 = t103 * (t109 * t196 - t101 * t193 - t285 - t293);
+        let rate_dot_1_leg4 = t98 * (t106 * t196 - t96 * t193 - t285 - t293);
         let t296 = actuator_accelerations[3] - rate_dot_1_leg4;
         let t305 = g1_vx_leg1 * t248 - minus_g1_vx_leg2 * t226 + g1_vx_leg3 * t273
             - minus_g1_vx_leg4 * t296;
@@ -4819,144 +4788,138 @@ impl DualV {
         let t318 = g1_wz_leg2 * t226 - minus_g1_wz_leg1 * t248 + g1_wz_leg3 * t273
             - minus_g1_wz_leg4 * t296 - t130 * t305 - t160 * t316;
         let rate_dot_3_leg1 = t163 * t318;
-        let t324 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t83;
-        let t329 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t83;
-        let t330 = t329 * rate_dot_3_leg1;
-        let t333 = t159 * t316 - t160 * rate_dot_3_leg1;
-        let t339 = t129 * t305 - t156 * t333 - t130 * rate_dot_3_leg1;
-        let t341 = c_phi * t333 - s_phi * t339;
-        let t346 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t83;
-        let t347 = t2 * rate_dot_3_leg1;
-        let t349 = 9.090909090909092 * (t193 + t347);
-        let t354 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t83;
-        let t355 = t6 * rate_dot_3_leg1;
-        let t357 = 9.090909090909092 * (t355 - t196);
-        let t364 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t83;
-        let t369 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t83;
-        let t375 = t76 * t83;
-        let t377 = t80 * t83;
-        let t386 = c_phi * t339 + s_phi * t333;
-        let t395 = t329 * t386;
-        let t405 = t339 - t355 + t196;
-        let t408 = t333 - t347 - t193;
-        let t411 = t67 * t405 + t59 * t408 + t237;
-        let rate_dot_1_leg1 = t61 * (t411 + t245);
-        let t417 = t17 * t405 + t42 * t408 + t215;
-        let minus_rate_dot_1_leg2 = t19 * (t417 + t223);
-        let t421 = t339 + t355 - t196;
-        let t424 = t333 + t347 + t193;
-        let t427 = t47 * t421 + t34 * t424 + t262;
-        let rate_dot_1_leg3 = t36 * (t427 + t270);
-        let t434 = minus_g1_vy_leg4 * t354 - minus_g1_vx_leg4 * t346
-            - minus_g1_wz_leg4 * t84;
-        let t438 = t109 * t421 + t101 * t424 + t285;
-        let minus_rate_dot_1_leg4 = t103 * (t438 + t293);
-        let t446 = minus_g1_vy_leg4 * t369 - minus_g1_vx_leg4 * t364
+        let t324 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t75;
+        let t326 = t100 * rate_dot_3_leg1;
+        let t330 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t75;
+        let t332 = t196 - t6 * rate_dot_3_leg1;
+        let t333 = 9.090909090909092 * t332;
+        let t338 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t75;
+        let t340 = t193 + t2 * rate_dot_3_leg1;
+        let t341 = 9.090909090909092 * t340;
+        let t346 = t159 * t316 - t160 * rate_dot_3_leg1;
+        let t352 = t129 * t305 - t156 * t346 - t130 * rate_dot_3_leg1;
+        let t354 = c_phi * t346 - s_phi * t352;
+        let t360 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t75;
+        let t365 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t75;
+        let t380 = s_phi * t346 + c_phi * t352;
+        let t389 = t100 * t380;
+        let t398 = t332 + t352;
+        let t400 = t346 - t340;
+        let t403 = t63 * t398 + t70 * t400 + t237;
+        let rate_dot_1_leg1 = t65 * (t403 + t245);
+        let t409 = t17 * t398 + t42 * t400 + t215;
+        let minus_rate_dot_1_leg2 = t19 * (t409 + t223);
+        let t412 = t352 - t332;
+        let t414 = t340 + t346;
+        let t417 = t47 * t412 + t34 * t414 + t262;
+        let rate_dot_1_leg3 = t36 * (t417 + t270);
+        let t424 = minus_g1_vy_leg4 * t330 - minus_g1_vx_leg4 * t338
+            - minus_g1_wz_leg4 * t76;
+        let t428 = t106 * t412 + t96 * t414 + t285;
+        let minus_rate_dot_1_leg4 = t98 * (t428 + t293);
+        let t436 = minus_g1_vy_leg4 * t360 - minus_g1_vx_leg4 * t365
             + minus_g1_wz_leg4 * t324;
-        let t450 = minus_g1_vy_leg4 * t377 - minus_g1_vx_leg4 * t375;
-        let t451 = 2.0 * t450;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t469 = minus_g2_vy_leg1 * t354 - minus_g2_vx_leg1 * t346 + g2_wz_leg1 * t84;
-        let t474 = t66 * t405 + t58 * t408 + 0.0784 * t242;
-        let minus_rate_dot_2_leg1 = t61 * (t474 + t236 * t244);
-        let t483 = minus_g2_vy_leg1 * t369 - minus_g2_vx_leg1 * t364 - g2_wz_leg1 * t324;
+        let t455 = minus_g2_vy_leg1 * t330 - minus_g2_vx_leg1 * t338 + g2_wz_leg1 * t76;
+        let t460 = t62 * t398 + t69 * t400 + 0.0784 * t242;
+        let minus_rate_dot_2_leg1 = t65 * (t460 + t236 * t244);
+        let t469 = minus_g2_vy_leg1 * t360 - minus_g2_vx_leg1 * t365 - g2_wz_leg1 * t324;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t492 = g2_vx_leg2 * t346 - g2_vy_leg2 * t354 - minus_g2_wz_leg2 * t84;
-        let t497 = t16 * t405 + t41 * t408 + 0.0784 * t220;
-        let rate_dot_2_leg2 = t19 * (t497 + t214 * t222);
-        let t506 = g2_vx_leg2 * t364 - g2_vy_leg2 * t369 + minus_g2_wz_leg2 * t324;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t515 = minus_g2_vy_leg3 * t354 - minus_g2_vx_leg3 * t346
-            - minus_g2_wz_leg3 * t84;
-        let t520 = t46 * t421 + t33 * t424 + 0.0784 * t267;
-        let minus_rate_dot_2_leg3 = t36 * (t520 + t261 * t269);
-        let t529 = minus_g2_vy_leg3 * t369 - minus_g2_vx_leg3 * t364
+        let t478 = g2_vx_leg2 * t338 - g2_vy_leg2 * t330 - minus_g2_wz_leg2 * t76;
+        let t483 = t16 * t398 + t41 * t400 + 0.0784 * t220;
+        let rate_dot_2_leg2 = t19 * (t483 + t214 * t222);
+        let t492 = g2_vx_leg2 * t365 - g2_vy_leg2 * t360 + minus_g2_wz_leg2 * t324;
+        let t500 = 2.0 * (minus_g2_vy_leg3 * t101 + minus_g2_vx_leg3 * t108);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * t500;
+        let t503 = minus_g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t338
+            - minus_g2_wz_leg3 * t76;
+        let t508 = t46 * t412 + t33 * t414 + 0.0784 * t267;
+        let minus_rate_dot_2_leg3 = t36 * (t508 + t261 * t269);
+        let t517 = minus_g2_vy_leg3 * t360 - minus_g2_vx_leg3 * t365
             + minus_g2_wz_leg3 * t324;
-        let t533 = minus_g2_vy_leg3 * t377 - minus_g2_vx_leg3 * t375;
-        let t534 = 2.0 * t533;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t543 = g2_vx_leg4 * t346 - g2_vy_leg4 * t354 + g2_wz_leg4 * t84;
-        let t548 = t108 * t421 + t100 * t424 + 0.0784 * t290;
-        let rate_dot_2_leg4 = t103 * (t548 + t284 * t292);
-        let t557 = g2_vx_leg4 * t364 - g2_vy_leg4 * t369 - g2_wz_leg4 * t324;
-        let t561 = g2_vx_leg4 * t375 - g2_vy_leg4 * t377;
-        let t562 = 2.0 * t561;
-        let t565 = 3.5714285714285716 * t411;
-        let t569 = 3.5714285714285716 * t417;
-        let t574 = 3.5714285714285716 * t427;
-        let t581 = 3.5714285714285716 * t548;
-        let t583 = 3.5714285714285716 * t438;
-        let t593 = rate_1_leg1 + minus_rate_2_leg1;
-        let t594 = t469 - 1.0;
-        let t597 = minus_rate_1_leg2 + rate_2_leg2;
-        let t599 = t506 - 1.0;
-        let t601 = rate_1_leg3 + minus_rate_2_leg3;
-        let t604 = t534 - 1.0;
-        let t606 = minus_rate_1_leg4 + rate_2_leg4;
-        let t607 = t543 - t434;
-        let t609 = t557 - t446;
-        let t612 = 2.0 * (t561 - t450);
-        let t624 = minus_rate_2_leg1 + rate_3_leg1;
-        let t625 = t84 - t469;
-        let t627 = t483 + t324;
-        let t630 = rate_3_leg1 - rate_2_leg2;
-        let t631 = t84 - t492;
-        let t633 = t506 + t324;
-        let t636 = minus_rate_2_leg3 + rate_3_leg1;
-        let t637 = t84 - t515;
-        let t639 = t529 + t324;
-        let t641 = t329 - t534;
-        let t643 = rate_3_leg1 - rate_2_leg4;
-        let t644 = t84 - t543;
-        let t646 = t557 + t324;
-        let t648 = t329 - t562;
+        let t525 = g2_vx_leg4 * t108 + g2_vy_leg4 * t101;
+        let t526 = 2.0 * t525;
+        let g2_wz_leg4 = g1_wz_leg3 * t526;
+        let t529 = g2_vx_leg4 * t338 - g2_vy_leg4 * t330 + g2_wz_leg4 * t76;
+        let t534 = t105 * t412 + t95 * t414 + 0.0784 * t290;
+        let rate_dot_2_leg4 = t98 * (t534 + t284 * t292);
+        let t543 = g2_vx_leg4 * t365 - g2_vy_leg4 * t360 - g2_wz_leg4 * t324;
+        let t547 = 3.5714285714285716 * t403;
+        let t551 = 3.5714285714285716 * t409;
+        let t556 = 3.5714285714285716 * t417;
+        let t562 = 3.5714285714285716 * t534;
+        let t564 = 3.5714285714285716 * t428;
+        let t574 = rate_1_leg1 + minus_rate_2_leg1;
+        let t575 = t455 - 1.0;
+        let t578 = minus_rate_1_leg2 + rate_2_leg2;
+        let t580 = t492 - 1.0;
+        let t582 = rate_1_leg3 + minus_rate_2_leg3;
+        let t585 = t500 + 1.0;
+        let t587 = minus_rate_1_leg4 + rate_2_leg4;
+        let t588 = t529 - t424;
+        let t590 = t543 - t436;
+        let t592 = t111 + t526;
+        let t604 = minus_rate_2_leg1 + rate_3_leg1;
+        let t605 = t76 - t455;
+        let t607 = t469 + t324;
+        let t610 = rate_3_leg1 - rate_2_leg2;
+        let t611 = t76 - t478;
+        let t613 = t492 + t324;
+        let t616 = minus_rate_2_leg3 + rate_3_leg1;
+        let t617 = t76 - t503;
+        let t619 = t517 + t324;
+        let t621 = t100 + t500;
+        let t623 = rate_3_leg1 - rate_2_leg4;
+        let t624 = t76 - t529;
+        let t626 = t543 + t324;
+        let t628 = t100 - t526;
         Ok([
             [
-                t84 * rate_dot_3_leg1, t84 * t341 - (t346 * t349 + t354 * t357),
-                t354 * t349 - t346 * t357 - t84 * t386, t346 * t339 - t354 * t333, rate_dot_1_leg1,
-                0.0, 0.0, -(t434 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0,
-                -(t434 * minus_rate_1_leg4), ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                -::overact::math::signed(t434, minus_rate_1_leg4), 1.0, 0.0, 0.0, t434,
-                -(t469 * minus_rate_dot_2_leg1), t492 * rate_dot_2_leg2,
-                -(t515 * minus_rate_dot_2_leg3), t543 * rate_dot_2_leg4,
-                3.5714285714285716 * t474 - t469 * t565, -(t492 * t569), -(t515 * t574),
-                t434 * t581 - t543 * t583, -(t593 * t594), t492 * t597, -(t515 * t601), t606 * t607,
-                -::overact::math::signed(t594, t593), ::overact::math::signed(t492, t597),
-                -::overact::math::signed(t515, t601), ::overact::math::signed(t607, t606), t594,
-                t492, t515, t607, t624 * t625, t630 * t631, t636 * t637, t643 * t644,
-                ::overact::math::signed(t625, t624), ::overact::math::signed(t631, t630),
-                ::overact::math::signed(t637, t636), ::overact::math::signed(t644, t643), t625,
+                t76 * rate_dot_3_leg1, t330 * t333 - t338 * t341 + t76 * t354,
+                t338 * t333 + t330 * t341 - t76 * t380, t338 * t352 - t330 * t346, rate_dot_1_leg1,
+                0.0, 0.0, -(t424 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0,
+                -(t424 * minus_rate_1_leg4), ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                -::overact::math::signed(t424, minus_rate_1_leg4), 1.0, 0.0, 0.0, t424,
+                -(t455 * minus_rate_dot_2_leg1), t478 * rate_dot_2_leg2,
+                -(t503 * minus_rate_dot_2_leg3), t529 * rate_dot_2_leg4,
+                3.5714285714285716 * t460 - t455 * t547, -(t478 * t551), -(t503 * t556),
+                t424 * t562 - t529 * t564, -(t574 * t575), t478 * t578, -(t503 * t582), t587 * t588,
+                -::overact::math::signed(t575, t574), ::overact::math::signed(t478, t578),
+                -::overact::math::signed(t503, t582), ::overact::math::signed(t588, t587), t575,
+                t478, t503, t588, t604 * t605, t610 * t611, t616 * t617, t623 * t624,
+                ::overact::math::signed(t605, t604), ::overact::math::signed(t611, t610),
+                ::overact::math::signed(t617, t616), ::overact::math::signed(t624, t623), t605,
             ],
             [
-                -(t324 * rate_dot_3_leg1), -(t364 * t349 + t369 * t357 + t324 * t341),
-                t369 * t349 - t364 * t357 + t324 * t386, t364 * t339 - t369 * t333, 0.0,
-                -minus_rate_dot_1_leg2, 0.0, -(t446 * minus_rate_dot_1_leg4), 0.0,
-                -minus_rate_1_leg2, 0.0, -(t446 * minus_rate_1_leg4), 0.0,
+                -(t324 * rate_dot_3_leg1), t360 * t333 - t365 * t341 - t324 * t354,
+                t365 * t333 + t360 * t341 + t324 * t380, t365 * t352 - t360 * t346, 0.0,
+                -minus_rate_dot_1_leg2, 0.0, -(t436 * minus_rate_dot_1_leg4), 0.0,
+                -minus_rate_1_leg2, 0.0, -(t436 * minus_rate_1_leg4), 0.0,
                 -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                -::overact::math::signed(t446, minus_rate_1_leg4), 0.0, 1.0, 0.0, t446,
-                -(t483 * minus_rate_dot_2_leg1), t506 * rate_dot_2_leg2,
-                -(t529 * minus_rate_dot_2_leg3), t557 * rate_dot_2_leg4, -(t483 * t565),
-                3.5714285714285716 * t497 - t506 * t569, -(t529 * t574), t446 * t581 - t557 * t583,
-                -(t483 * t593), t597 * t599, -(t529 * t601), t606 * t609,
-                -::overact::math::signed(t483, t593), ::overact::math::signed(t599, t597),
-                -::overact::math::signed(t529, t601), ::overact::math::signed(t609, t606), t483,
-                t599, t529, t609, -(t624 * t627), -(t630 * t633), -(t636 * t639), -(t643 * t646),
-                -::overact::math::signed(t627, t624), -::overact::math::signed(t633, t630),
-                -::overact::math::signed(t639, t636), -::overact::math::signed(t646, t643), -t627,
+                -::overact::math::signed(t436, minus_rate_1_leg4), 0.0, 1.0, 0.0, t436,
+                -(t469 * minus_rate_dot_2_leg1), t492 * rate_dot_2_leg2,
+                -(t517 * minus_rate_dot_2_leg3), t543 * rate_dot_2_leg4, -(t469 * t547),
+                3.5714285714285716 * t483 - t492 * t551, -(t517 * t556), t436 * t562 - t543 * t564,
+                -(t469 * t574), t578 * t580, -(t517 * t582), t587 * t590,
+                -::overact::math::signed(t469, t574), ::overact::math::signed(t580, t578),
+                -::overact::math::signed(t517, t582), ::overact::math::signed(t590, t587), t469,
+                t580, t517, t590, -(t604 * t607), -(t610 * t613), -(t616 * t619), -(t623 * t626),
+                -::overact::math::signed(t607, t604), -::overact::math::signed(t613, t610),
+                -::overact::math::signed(t619, t616), -::overact::math::signed(t626, t623), -t607,
             ],
             [
-                t330, t329 * t341 - (t375 * t349 + t377 * t357), -(0.11 * t330 + t395), 0.11 * t395,
-                0.0, 0.0, rate_dot_1_leg3, -(t451 * minus_rate_dot_1_leg4), 0.0, 0.0, rate_1_leg3,
-                -(t451 * minus_rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                -::overact::math::signed(t451, minus_rate_1_leg4), 0.0, 0.0, 1.0, t451, 0.0, 0.0,
-                -(t534 * minus_rate_dot_2_leg3), t562 * rate_dot_2_leg4, 0.0, 0.0,
-                3.5714285714285716 * t520 - 7.142857142857143 * (t533 * t427),
-                7.142857142857143 * (t450 * t548 - t561 * t438), 0.0, 0.0, -(t601 * t604),
-                t606 * t612, 0.0, 0.0, -::overact::math::signed(t604, t601),
-                ::overact::math::signed(t612, t606), 0.0, 0.0, t604, t612, t329 * t624, t329 * t630,
-                t636 * t641, t643 * t648, ::overact::math::signed(t329, t624),
-                ::overact::math::signed(t329, t630), ::overact::math::signed(t641, t636),
-                ::overact::math::signed(t648, t643), t329,
+                t326, t100 * t354 - (t101 * t333 + t108 * t341), -(0.11 * t326 + t389), 0.11 * t389,
+                0.0, 0.0, rate_dot_1_leg3, t111 * minus_rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
+                t111 * minus_rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(t111, minus_rate_1_leg4), 0.0, 0.0, 1.0, -t111, 0.0, 0.0,
+                t500 * minus_rate_dot_2_leg3, t526 * rate_dot_2_leg4, 0.0, 0.0,
+                3.5714285714285716 * t508 + t556 * t500,
+                -(7.142857142857143 * (t110 * t534 + t525 * t428)), 0.0, 0.0, t582 * t585,
+                t587 * t592, 0.0, 0.0, ::overact::math::signed(t585, t582),
+                ::overact::math::signed(t592, t587), 0.0, 0.0, -t585, t592, t100 * t604,
+                t100 * t610, t616 * t621, t623 * t628, ::overact::math::signed(t100, t604),
+                ::overact::math::signed(t100, t610), ::overact::math::signed(t621, t616),
+                ::overact::math::signed(t628, t623), t100,
             ],
         ])
     }
@@ -4982,12 +4945,12 @@ impl DualV {
         let t5 = 0.11 * s_phi;
         let t8 = 9.090909090909092 * (twist[2] * (t2 * twist[2]) + t5 * acceleration[2]);
         let t13 = 9.090909090909092
-            * (t2 * acceleration[2] - twist[2] * (t5 * twist[2]));
+            * (twist[2] * (t5 * twist[2]) - t2 * acceleration[2]);
         [
-            [0.0, -t8, -t13, acceleration[0]], [0.0, t13, -t8, acceleration[1]],
+            [0.0, -t8, t13, acceleration[0]], [0.0, -t13, -t8, acceleration[1]],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ]
     }
@@ -5015,12 +4978,12 @@ impl DualV {
         let t5 = 0.11 * s_phi;
         let t8 = 9.090909090909092 * (twist[2] * (t2 * twist[2]) + t5 * acceleration[2]);
         let t13 = 9.090909090909092
-            * (t2 * acceleration[2] - twist[2] * (t5 * twist[2]));
+            * (twist[2] * (t5 * twist[2]) - t2 * acceleration[2]);
         [
-            [0.0, -t8, -t13, acceleration[0]], [0.0, t13, -t8, acceleration[1]],
+            [0.0, -t8, t13, acceleration[0]], [0.0, -t13, -t8, acceleration[1]],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ]
     }
@@ -5210,13 +5173,13 @@ impl DualV {
             - minus_g1_wz_leg4 * t282 - t116 * t291 - t146 * t302;
         let rate_dot_3_leg1 = t149 * t304;
         let t308 = 9.090909090909092 * (t179 + t2 * rate_dot_3_leg1);
-        let t311 = 9.090909090909092 * (t3 * rate_dot_3_leg1 - t182);
+        let t311 = 9.090909090909092 * (t182 - t3 * rate_dot_3_leg1);
         let t314 = t145 * t302 - t146 * rate_dot_3_leg1;
         let t320 = t115 * t291 - t142 * t314 - t116 * rate_dot_3_leg1;
         Ok([
-            [0.0, -t308, -t311, t320], [0.0, t311, -t308, t314],
+            [0.0, -t308, t311, t320], [0.0, -t311, -t308, t314],
             [
-                rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(c_phi * t320 + s_phi * t314), 0.0,
+                rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(s_phi * t314 + c_phi * t320), 0.0,
             ],
         ])
     }
@@ -5230,7 +5193,7 @@ impl DualV {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 163 operations (57 additions, 99 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 156 intermediates.
+    /// 149 operations (48 additions, 94 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 142 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5250,72 +5213,70 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg2")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg2")?;
-        let t19 = 1.0 / t18;
-        let minus_g1_vx_leg2 = (t4 - (0.5 * t4 - t8 * t14)) * t19;
-        let t22 = pose[1] - t6 + 0.10970563941232059;
-        let t25 = pose[0] + t2 + 0.3950502153918333;
-        let t28 = t25 * t25 + t22 * t22;
-        let t30 = 0.0784 / t28 - 0.25;
-        ::overact::guard::reach(t30, "leg3")?;
-        let t31 = ::overact::math::sqrt(t30);
-        let t35 = t28 * t31;
-        ::overact::guard::leg(t35, 0.07839913810297301, "leg3")?;
-        let t36 = 1.0 / t35;
-        let g1_vy_leg3 = (t22 - (0.5 * t22 - t25 * t31)) * t36;
-        let t39 = 0.5 * t8;
-        let minus_g1_vy_leg2 = (t8 - (t39 + t4 * t14)) * t19;
-        let g1_vx_leg3 = (t25 - (0.5 * t25 + t22 * t31)) * t36;
-        let t51 = t3 - 0.3950502153918333;
-        let t53 = t51 * t51 + t10;
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg2")?;
+        let t18 = 1.0 / t17;
+        let minus_g1_vx_leg2 = (0.5 * t4 + t8 * t14) * t18;
+        let t21 = pose[1] - t6 + 0.10970563941232059;
+        let t24 = pose[0] + t2 + 0.3950502153918333;
+        let t27 = t24 * t24 + t21 * t21;
+        let t29 = 0.0784 / t27 - 0.25;
+        ::overact::guard::reach(t29, "leg3")?;
+        let t30 = ::overact::math::sqrt(t29);
+        let t33 = t27 * t30;
+        ::overact::guard::leg(t33, 0.07839913810297301, "leg3")?;
+        let t34 = 1.0 / t33;
+        let g1_vy_leg3 = (0.5 * t21 + t24 * t30) * t34;
+        let t37 = 0.5 * t8;
+        let minus_g1_vy_leg2 = (t37 - t4 * t14) * t18;
+        let g1_vx_leg3 = (0.5 * t24 - t21 * t30) * t34;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let t50 = t3 - 0.3950502153918333;
+        let t53 = t50 * t50 + t10;
         let t55 = 0.0784 / t53 - 0.25;
         ::overact::guard::reach(t55, "leg1")?;
         let t56 = ::overact::math::sqrt(t55);
-        let t60 = t53 * t56;
-        ::overact::guard::leg(t60, 0.07839913810297301, "leg1")?;
-        let t61 = 1.0 / t60;
-        let g1_vy_leg1 = (t8 - (t39 - t51 * t56)) * t61;
-        let g1_vx_leg1 = (t51 - (0.5 * t51 + t8 * t56)) * t61;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let t59 = t53 * t56;
+        ::overact::guard::leg(t59, 0.07839913810297301, "leg1")?;
+        let t60 = 1.0 / t59;
+        let g1_vx_leg1 = (0.5 * t50 - t8 * t56) * t60;
+        let g1_vy_leg1 = (t37 + t50 * t56) * t60;
+        let t67 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t68 = g1_wz_leg3 * t67;
+        ::overact::guard::platform(t68, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t68, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t68, 3.5376915986291904, "kept actuators")?;
+        let t69 = 0.5 / t68;
+        let t70 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t69;
+        let t75 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t69;
+        let t77 = t67 * t69;
+        let t78 = t77 * acceleration[2];
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t76 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t80 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t82 = g1_vx_leg3 * t76 - g1_vy_leg3 * t80;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t82, 3.5376915986291904, "kept actuators")?;
-        let t83 = 0.5 / t82;
-        let t84 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t83;
-        let t89 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t83;
-        let t94 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t83;
-        let t95 = t94 * acceleration[2];
-        let t98 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t106 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t83;
-        let t111 = 9.090909090909092
+        let t85 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t69;
+        let t90 = 9.090909090909092
+            * (twist[2] * (t2 * twist[2]) - t6 * acceleration[2]);
+        let t95 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t69;
+        let t100 = 9.090909090909092
             * (twist[2] * (t6 * twist[2]) + t2 * acceleration[2]);
-        let t116 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t83;
-        let t121 = 9.090909090909092
-            * (t6 * acceleration[2] - twist[2] * (t2 * twist[2]));
-        let t128 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t83;
-        let t133 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t83;
-        let t150 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t159 = t94 * t150;
+        let t105 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let t114 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t69;
+        let t119 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t69;
+        let t136 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t145 = t77 * t136;
         Ok([
             [
-                t84 * acceleration[2], t84 * t98 - (t106 * t111 + t116 * t121),
-                t116 * t111 - t106 * t121 - t84 * t150,
-                t106 * acceleration[0] - t116 * acceleration[1],
+                t70 * acceleration[2], t85 * t90 - t95 * t100 + t70 * t105,
+                t95 * t90 + t85 * t100 - t70 * t136, t95 * acceleration[0] - t85 * acceleration[1],
             ],
             [
-                -(t89 * acceleration[2]), -(t128 * t111 + t133 * t121 + t89 * t98),
-                t133 * t111 - t128 * t121 + t89 * t150,
-                t128 * acceleration[0] - t133 * acceleration[1],
+                -(t75 * acceleration[2]), t114 * t90 - t119 * t100 - t75 * t105,
+                t119 * t90 + t114 * t100 + t75 * t136,
+                t119 * acceleration[0] - t114 * acceleration[1],
             ],
             [
-                t95, t94 * t98 - (t76 * t83 * t111 + t80 * t83 * t121), -(0.11 * t95 + t159),
-                0.11 * t159,
+                t78, t77 * t105 - (t2 * t77 * t90 + t6 * t77 * t100), -(0.11 * t78 + t145),
+                0.11 * t145,
             ],
         ])
     }
@@ -5327,7 +5288,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 109 operations (47 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 112 intermediates.
+    /// 101 operations (39 additions, 54 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 104 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5346,46 +5307,46 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t10;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
-        let t71 = 0.5 * t8;
-        let g1_vy_leg1 = (t8 - (t71 - t4 * t14)) * t19;
-        let minus_g1_vy_leg2 = (t8 - (t71 + t22 * t28)) * t33;
-        let t83 = 0.5 * t41;
-        let g1_vy_leg3 = (t41 - (t83 - t38 * t47)) * t52;
-        let minus_g1_vy_leg4 = (t41 - (t83 + t56 * t62)) * t67;
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
+        let t18 = 1.0 / t17;
+        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
+        let t21 = t3 + 0.3950502153918333;
+        let t24 = t21 * t21 + t10;
+        let t26 = 0.0784 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t30 = t24 * t27;
+        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
+        let t31 = 1.0 / t30;
+        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
+        let t35 = pose[0] + t2;
+        let t36 = t35 + 0.3950502153918333;
+        let t39 = pose[1] - t6 + 0.10970563941232059;
+        let t41 = t39 * t39;
+        let t42 = t36 * t36 + t41;
+        let t44 = 0.0784 / t42 - 0.25;
+        ::overact::guard::reach(t44, "leg3")?;
+        let t45 = ::overact::math::sqrt(t44);
+        let t48 = t42 * t45;
+        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
+        let t49 = 1.0 / t48;
+        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
+        let t53 = t35 - 0.3950502153918333;
+        let t56 = t53 * t53 + t41;
+        let t58 = 0.0784 / t56 - 0.25;
+        ::overact::guard::reach(t58, "leg4")?;
+        let t59 = ::overact::math::sqrt(t58);
+        let t62 = t56 * t59;
+        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
+        let t63 = 1.0 / t62;
+        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
+        let t67 = 0.5 * t8;
+        let g1_vy_leg1 = (t67 + t4 * t14) * t18;
+        let minus_g1_vy_leg2 = (t67 - t21 * t27) * t31;
+        let t77 = 0.5 * t39;
+        let g1_vy_leg3 = (t77 + t36 * t45) * t49;
+        let minus_g1_vy_leg4 = (t77 - t53 * t59) * t63;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
@@ -5407,7 +5368,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 144 operations (55 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 147 intermediates.
+    /// 134 operations (46 additions, 79 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 137 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5427,82 +5388,80 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg4")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg4")?;
-        let t19 = 1.0 / t18;
-        let minus_g1_vy_leg4 = (t4 - (t5 + t8 * t14)) * t19;
-        let t22 = pose[1] + t2 - 0.10970563941232059;
-        let t23 = 0.5 * t22;
-        let t24 = pose[0] - t6;
-        let t25 = t24 + 0.3950502153918333;
-        let t27 = t22 * t22;
-        let t28 = t25 * t25 + t27;
-        let t30 = 0.0784 / t28 - 0.25;
-        ::overact::guard::reach(t30, "leg2")?;
-        let t31 = ::overact::math::sqrt(t30);
-        let t35 = t28 * t31;
-        ::overact::guard::leg(t35, 0.07839913810297301, "leg2")?;
-        let t36 = 1.0 / t35;
-        let minus_g1_vy_leg2 = (t22 - (t23 + t25 * t31)) * t36;
-        let minus_g1_vx_leg2 = (t25 - (0.5 * t25 - t22 * t31)) * t36;
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg4")?;
+        let t18 = 1.0 / t17;
+        let minus_g1_vy_leg4 = (t5 - t8 * t14) * t18;
+        let t21 = pose[1] + t2 - 0.10970563941232059;
+        let t22 = 0.5 * t21;
+        let t23 = pose[0] - t6;
+        let t24 = t23 + 0.3950502153918333;
+        let t26 = t21 * t21;
+        let t27 = t24 * t24 + t26;
+        let t29 = 0.0784 / t27 - 0.25;
+        ::overact::guard::reach(t29, "leg2")?;
+        let t30 = ::overact::math::sqrt(t29);
+        let t33 = t27 * t30;
+        ::overact::guard::leg(t33, 0.07839913810297301, "leg2")?;
+        let t34 = 1.0 / t33;
+        let minus_g1_vy_leg2 = (t22 - t24 * t30) * t34;
+        let minus_g1_vx_leg2 = (0.5 * t24 + t21 * t30) * t34;
         let g1_wz_leg2 = t6 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let t46 = t7 + 0.3950502153918333;
-        let t49 = t46 * t46 + t10;
-        let t51 = 0.0784 / t49 - 0.25;
-        ::overact::guard::reach(t51, "leg3")?;
-        let t52 = ::overact::math::sqrt(t51);
-        let t56 = t49 * t52;
-        ::overact::guard::leg(t56, 0.07839913810297301, "leg3")?;
-        let t57 = 1.0 / t56;
-        let g1_vx_leg3 = (t46 - (0.5 * t46 + t4 * t52)) * t57;
-        let g1_vy_leg3 = (t4 - (t5 - t46 * t52)) * t57;
+        let t43 = t7 + 0.3950502153918333;
+        let t46 = t43 * t43 + t10;
+        let t48 = 0.0784 / t46 - 0.25;
+        ::overact::guard::reach(t48, "leg3")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let t52 = t46 * t49;
+        ::overact::guard::leg(t52, 0.07839913810297301, "leg3")?;
+        let t53 = 1.0 / t52;
+        let g1_vx_leg3 = (0.5 * t43 - t4 * t49) * t53;
+        let g1_vy_leg3 = (t5 + t43 * t49) * t53;
         let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t69 = t24 - 0.3950502153918333;
-        let t71 = t69 * t69 + t27;
-        let t73 = 0.0784 / t71 - 0.25;
-        ::overact::guard::reach(t73, "leg1")?;
-        let t74 = ::overact::math::sqrt(t73);
-        let t78 = t71 * t74;
-        ::overact::guard::leg(t78, 0.07839913810297301, "leg1")?;
-        let t79 = 1.0 / t78;
-        let g1_vy_leg1 = (t22 - (t23 - t69 * t74)) * t79;
-        let g1_vx_leg1 = (t69 - (0.5 * t69 + t22 * t74)) * t79;
+        let t64 = t23 - 0.3950502153918333;
+        let t66 = t64 * t64 + t26;
+        let t68 = 0.0784 / t66 - 0.25;
+        ::overact::guard::reach(t68, "leg1")?;
+        let t69 = ::overact::math::sqrt(t68);
+        let t72 = t66 * t69;
+        ::overact::guard::leg(t72, 0.07839913810297301, "leg1")?;
+        let t73 = 1.0 / t72;
+        let g1_vy_leg1 = (t22 + t64 * t69) * t73;
+        let g1_vx_leg1 = (0.5 * t64 - t21 * t69) * t73;
         let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t91 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
-        let t95 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
-        let t97 = g1_vx_leg3 * t91 - g1_vy_leg3 * t95;
-        ::overact::guard::platform(t97, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t97, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t97, 3.5376915986291904, "kept actuators")?;
-        let t98 = 0.5 / t97;
-        let minus_g1_vx_leg4 = (t8 - (0.5 * t8 - t4 * t14)) * t19;
-        let t111 = minus_g1_vy_leg4
-            * ((g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t98)
+        let t84 = minus_g1_wz_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_wz_leg2;
+        let t88 = minus_g1_wz_leg1 * minus_g1_vx_leg2 - g1_vx_leg1 * g1_wz_leg2;
+        let t90 = g1_vx_leg3 * t84 - g1_vy_leg3 * t88;
+        ::overact::guard::platform(t90, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t90, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t90, 3.5376915986291904, "kept actuators")?;
+        let t91 = 0.5 / t90;
+        let minus_g1_vx_leg4 = (0.5 * t8 + t4 * t14) * t18;
+        let t103 = minus_g1_vy_leg4
+            * ((g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t91)
             - minus_g1_vx_leg4
-                * ((g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t98);
-        let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t133 = minus_g1_vy_leg4
-            * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t98)
+                * ((g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t91);
+        let t109 = 2.0
+            * (minus_g1_vy_leg4 * (t88 * t91) - minus_g1_vx_leg4 * (t84 * t91));
+        let minus_minus_g1_wz_leg4 = g1_wz_leg3 * t109;
+        let t129 = minus_g1_vy_leg4
+            * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t91)
             - minus_g1_vx_leg4
-                * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t98);
+                * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t91);
         Ok([
             torques[0]
                 + torques[3]
-                    * (t111
-                        - minus_g1_wz_leg4
+                    * (t103
+                        + minus_minus_g1_wz_leg4
                             * ((minus_g1_vx_leg2 * g1_vy_leg3
-                                - minus_g1_vy_leg2 * g1_vx_leg3) * t98)),
+                                - minus_g1_vy_leg2 * g1_vx_leg3) * t91)),
             torques[1]
                 + torques[3]
-                    * (t133
-                        + minus_g1_wz_leg4
+                    * (t129
+                        - minus_minus_g1_wz_leg4
                             * ((g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
-                                * t98)),
-            torques[2]
-                + torques[3]
-                    * (2.0
-                        * (minus_g1_vy_leg4 * (t95 * t98)
-                            - minus_g1_vx_leg4 * (t91 * t98))),
+                                * t91)),
+            torques[2] + torques[3] * t109,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5515,7 +5474,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 598 operations (261 additions, 326 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 612 intermediates.
+    /// 583 operations (257 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 597 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5542,21 +5501,19 @@ impl DualV {
         ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
         let t19 = 1.0 / t18;
         let g1_vx_leg1 = t17 * t19;
-        let t21 = t6 * acceleration[2];
-        let t23 = t2 * twist[2];
-        let t24 = twist[2] * t23;
-        let t25 = acceleration[0] - t21 + t24;
+        let t21 = t2 * twist[2];
+        let t24 = twist[2] * t21 - t6 * acceleration[2];
+        let t25 = acceleration[0] + t24;
         let t27 = 0.5 * t8;
         let t29 = t27 - t4 * t14;
         let t30 = t8 - t29;
-        let t31 = t2 * acceleration[2];
-        let t33 = t6 * twist[2];
-        let t34 = twist[2] * t33;
-        let t35 = acceleration[1] - t31 - t34;
+        let t31 = t6 * twist[2];
+        let t34 = twist[2] * t31 + t2 * acceleration[2];
+        let t35 = acceleration[1] - t34;
         let minus_g2_vx_leg1 = t16 * t19;
-        let t39 = twist[0] - t33;
+        let t39 = twist[0] - t31;
         let minus_g2_vy_leg1 = t29 * t19;
-        let t42 = twist[1] - t23;
+        let t42 = twist[1] - t21;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
         let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
@@ -5566,247 +5523,250 @@ impl DualV {
         let t53 = t11 - 0.1568;
         let t54 = 0.5 * t53;
         let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
+        let t66 = 3.5714285714285716 * t18;
         let minus_rate_dot_2_leg1 = t19
             * (t16 * t25 + t29 * t35 + 0.0784 * t52 + t45 * t54);
         let t78 = 3.5714285714285716 * t47;
-        let t87 = 3.5714285714285716 * (t18 * t52)
-            + 1.7857142857142858 * (t53 * rate_dot_1_leg1);
-        let t94 = 3.5714285714285716 * t18
+        let t82 = 1.7857142857142858 * t53;
+        let t85 = t52 * t66 + rate_dot_1_leg1 * t82;
+        let t92 = t66
             * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t45
                 + parameters[8] * t78)
-            + 1.7857142857142858 * t53
-                * (parameters[8] * t87
+            + t82
+                * (parameters[8] * t85
                     - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t45));
-        let t96 = rate_1_leg1 + minus_rate_2_leg1;
-        let t100 = parameters[11]
-            - (parameters[9] * t96 + ::overact::math::signed(parameters[10], t96));
-        let t101 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t94 = rate_1_leg1 + minus_rate_2_leg1;
+        let t98 = parameters[11]
+            - (parameters[9] * t94 + ::overact::math::signed(parameters[10], t94));
+        let t99 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t94
-            - t100;
-        let t109 = minus_rate_2_leg1 + twist[2];
-        let t113 = parameters[12] * t109 + ::overact::math::signed(parameters[13], t109)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t92
+            - t98;
+        let t107 = minus_rate_2_leg1 + twist[2];
+        let t111 = parameters[12] * t107 + ::overact::math::signed(parameters[13], t107)
             + parameters[14];
-        let t114 = parameters[6] * t87 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t78 + t100 - t113;
-        let t117 = t3 + 0.3950502153918333;
-        let t120 = t117 * t117 + t10;
-        let t122 = 0.0784 / t120 - 0.25;
-        ::overact::guard::reach(t122, "leg2")?;
-        let t123 = ::overact::math::sqrt(t122);
-        let t125 = 0.5 * t117 - t8 * t123;
-        let t126 = t120 * t123;
-        ::overact::guard::leg(t126, 0.07839913810297301, "leg2")?;
-        let t127 = 1.0 / t126;
-        let g2_vx_leg2 = t125 * t127;
-        let t131 = t27 + t117 * t123;
-        let t134 = t117 - t125;
-        let minus_g1_vx_leg2 = t134 * t127;
-        let t137 = t8 - t131;
-        let minus_g1_vy_leg2 = t137 * t127;
+        let t112 = parameters[6] * t85 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t78 + t98 - t111;
+        let t115 = t3 + 0.3950502153918333;
+        let t118 = t115 * t115 + t10;
+        let t120 = 0.0784 / t118 - 0.25;
+        ::overact::guard::reach(t120, "leg2")?;
+        let t121 = ::overact::math::sqrt(t120);
+        let t123 = 0.5 * t115 - t8 * t121;
+        let t124 = t118 * t121;
+        ::overact::guard::leg(t124, 0.07839913810297301, "leg2")?;
+        let t125 = 1.0 / t124;
+        let g2_vx_leg2 = t123 * t125;
+        let t129 = t27 + t115 * t121;
+        let t132 = t115 - t123;
+        let minus_g1_vx_leg2 = t132 * t125;
+        let t135 = t8 - t129;
+        let minus_g1_vy_leg2 = t135 * t125;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t141 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let g2_vy_leg2 = t131 * t127;
+        let t139 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let g2_vy_leg2 = t129 * t125;
         let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t148 = rate_2_leg2 * rate_2_leg2;
-        let t149 = t120 - 0.1568;
-        let t150 = 0.5 * t149;
-        let rate_dot_2_leg2 = t127
-            * (t125 * t25 + t131 * t35 + 0.0784 * t141 + t148 * t150);
-        let t161 = t134 * t25 + t137 * t35 + 0.0784 * t148;
-        let minus_rate_dot_1_leg2 = t127 * (t161 + t141 * t150);
-        let t167 = 3.5714285714285716 * (t126 * t141)
-            + 1.7857142857142858 * (t149 * minus_rate_dot_1_leg2);
-        let t170 = 3.5714285714285716 * t161;
-        let t173 = minus_rate_1_leg2 + rate_2_leg2;
-        let t177 = parameters[24] * t173 + ::overact::math::signed(parameters[25], t173)
+        let t146 = rate_2_leg2 * rate_2_leg2;
+        let t147 = t118 - 0.1568;
+        let t148 = 0.5 * t147;
+        let rate_dot_2_leg2 = t125
+            * (t123 * t25 + t129 * t35 + 0.0784 * t139 + t146 * t148);
+        let t153 = 3.5714285714285716 * t124;
+        let t159 = t132 * t25 + t135 * t35 + 0.0784 * t146;
+        let minus_rate_dot_1_leg2 = t125 * (t159 + t139 * t148);
+        let t163 = 1.7857142857142858 * t147;
+        let t165 = t139 * t153 + minus_rate_dot_1_leg2 * t163;
+        let t168 = 3.5714285714285716 * t159;
+        let t171 = minus_rate_1_leg2 + rate_2_leg2;
+        let t175 = parameters[24] * t171 + ::overact::math::signed(parameters[25], t171)
             + parameters[26];
-        let t179 = twist[2] - rate_2_leg2;
-        let t183 = parameters[27] * t179 + ::overact::math::signed(parameters[28], t179)
+        let t177 = twist[2] - rate_2_leg2;
+        let t181 = parameters[27] * t177 + ::overact::math::signed(parameters[28], t177)
             + parameters[29];
-        let t184 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t167
-            - parameters[22] * t170 + t177 - t183;
-        let t208 = 1.7857142857142858 * t149
-            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t148
-                - parameters[23] * t167)
-            - 3.5714285714285716 * t126
-                * (parameters[23] * t170
-                    - (parameters[21] * t148 + parameters[22] * rate_dot_2_leg2));
-        let t210 = parameters[19]
+        let t182 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t165
+            - parameters[22] * t168 + t175 - t181;
+        let t204 = t163
+            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t146
+                - parameters[23] * t165)
+            - t153
+                * (parameters[23] * t168
+                    - (parameters[21] * t146 + parameters[22] * rate_dot_2_leg2));
+        let t206 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + parameters[17] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
-            - parameters[15] * minus_rate_dot_1_leg2 + t208 - t177;
-        let t214 = pose[0] + t2;
-        let t215 = t214 + 0.3950502153918333;
-        let t218 = pose[1] - t6 + 0.10970563941232059;
-        let t220 = t218 * t218;
-        let t221 = t215 * t215 + t220;
-        let t223 = 0.0784 / t221 - 0.25;
-        ::overact::guard::reach(t223, "leg3")?;
-        let t224 = ::overact::math::sqrt(t223);
-        let t226 = 0.5 * t215 + t218 * t224;
-        let t227 = t215 - t226;
-        let t228 = t221 * t224;
-        ::overact::guard::leg(t228, 0.07839913810297301, "leg3")?;
-        let t229 = 1.0 / t228;
-        let g1_vx_leg3 = t227 * t229;
-        let t232 = acceleration[0] + t21 - t24;
-        let t234 = 0.5 * t218;
-        let t236 = t234 - t215 * t224;
-        let t237 = t218 - t236;
-        let t239 = acceleration[1] + t31 + t34;
-        let minus_g2_vx_leg3 = t226 * t229;
-        let t243 = twist[0] + t33;
-        let minus_g2_vy_leg3 = t236 * t229;
-        let t246 = twist[1] + t23;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t243 + minus_g2_vy_leg3 * t246;
-        let t249 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t251 = t227 * t232 + t237 * t239 + 0.0784 * t249;
-        let g1_vy_leg3 = t237 * t229;
-        let rate_1_leg3 = g1_vx_leg3 * t243 + g1_vy_leg3 * t246;
-        let t256 = rate_1_leg3 * rate_1_leg3;
-        let t257 = t221 - 0.1568;
-        let t258 = 0.5 * t257;
-        let rate_dot_1_leg3 = t229 * (t251 + t256 * t258);
-        let minus_rate_dot_2_leg3 = t229
-            * (t226 * t232 + t236 * t239 + 0.0784 * t256 + t249 * t258);
-        let t282 = 3.5714285714285716 * t251;
-        let t291 = 3.5714285714285716 * (t228 * t256)
-            + 1.7857142857142858 * (t257 * rate_dot_1_leg3);
-        let t298 = 3.5714285714285716 * t228
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t249
-                + parameters[38] * t282)
-            + 1.7857142857142858 * t257
-                * (parameters[38] * t291
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t249));
-        let t300 = rate_1_leg3 + minus_rate_2_leg3;
-        let t304 = parameters[41]
-            - (parameters[39] * t300 + ::overact::math::signed(parameters[40], t300));
-        let t305 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+            - parameters[15] * minus_rate_dot_1_leg2 + t204 - t175;
+        let t210 = pose[0] + t2;
+        let t211 = t210 + 0.3950502153918333;
+        let t214 = pose[1] - t6 + 0.10970563941232059;
+        let t216 = t214 * t214;
+        let t217 = t211 * t211 + t216;
+        let t219 = 0.0784 / t217 - 0.25;
+        ::overact::guard::reach(t219, "leg3")?;
+        let t220 = ::overact::math::sqrt(t219);
+        let t222 = 0.5 * t211 + t214 * t220;
+        let t223 = t211 - t222;
+        let t224 = t217 * t220;
+        ::overact::guard::leg(t224, 0.07839913810297301, "leg3")?;
+        let t225 = 1.0 / t224;
+        let g1_vx_leg3 = t223 * t225;
+        let t227 = acceleration[0] - t24;
+        let t229 = 0.5 * t214;
+        let t231 = t229 - t211 * t220;
+        let t232 = t214 - t231;
+        let t233 = acceleration[1] + t34;
+        let minus_g2_vx_leg3 = t222 * t225;
+        let t237 = twist[0] + t31;
+        let minus_g2_vy_leg3 = t231 * t225;
+        let t240 = twist[1] + t21;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t240;
+        let t243 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t245 = t223 * t227 + t232 * t233 + 0.0784 * t243;
+        let g1_vy_leg3 = t232 * t225;
+        let rate_1_leg3 = g1_vx_leg3 * t237 + g1_vy_leg3 * t240;
+        let t250 = rate_1_leg3 * rate_1_leg3;
+        let t251 = t217 - 0.1568;
+        let t252 = 0.5 * t251;
+        let rate_dot_1_leg3 = t225 * (t245 + t250 * t252);
+        let t264 = 3.5714285714285716 * t224;
+        let minus_rate_dot_2_leg3 = t225
+            * (t222 * t227 + t231 * t233 + 0.0784 * t250 + t243 * t252);
+        let t276 = 3.5714285714285716 * t245;
+        let t280 = 1.7857142857142858 * t251;
+        let t283 = t250 * t264 + rate_dot_1_leg3 * t280;
+        let t290 = t264
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t243
+                + parameters[38] * t276)
+            + t280
+                * (parameters[38] * t283
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t243));
+        let t292 = rate_1_leg3 + minus_rate_2_leg3;
+        let t296 = parameters[41]
+            - (parameters[39] * t292 + ::overact::math::signed(parameters[40], t292));
+        let t297 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t298 - t304;
-        let t313 = minus_rate_2_leg3 + twist[2];
-        let t317 = parameters[42] * t313 + ::overact::math::signed(parameters[43], t313)
+            + t290 - t296;
+        let t305 = minus_rate_2_leg3 + twist[2];
+        let t309 = parameters[42] * t305 + ::overact::math::signed(parameters[43], t305)
             + parameters[44];
-        let t318 = parameters[36] * t291 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t282 + t304 - t317;
-        let t321 = g1_vx_leg1 * t101 - minus_g2_vx_leg1 * t114 + g2_vx_leg2 * t184
-            - minus_g1_vx_leg2 * t210 + g1_vx_leg3 * t305 - minus_g2_vx_leg3 * t318;
-        let t322 = t214 - 0.3950502153918333;
-        let t325 = t322 * t322 + t220;
-        let t327 = 0.0784 / t325 - 0.25;
-        ::overact::guard::reach(t327, "leg4")?;
-        let t328 = ::overact::math::sqrt(t327);
-        let t330 = 0.5 * t322 - t218 * t328;
-        let t331 = t325 * t328;
-        ::overact::guard::leg(t331, 0.07839913810297301, "leg4")?;
-        let t332 = 1.0 / t331;
-        let g2_vx_leg4 = t330 * t332;
-        let t336 = t234 + t322 * t328;
-        let t339 = t322 - t330;
-        let minus_g1_vx_leg4 = t339 * t332;
-        let t342 = t218 - t336;
-        let minus_g1_vy_leg4 = t342 * t332;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t243 + minus_g1_vy_leg4 * t246;
-        let t346 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let g2_vy_leg4 = t336 * t332;
-        let rate_2_leg4 = g2_vx_leg4 * t243 + g2_vy_leg4 * t246;
-        let t353 = rate_2_leg4 * rate_2_leg4;
-        let t354 = t325 - 0.1568;
-        let t355 = 0.5 * t354;
-        let rate_dot_2_leg4 = t332
-            * (t330 * t232 + t336 * t239 + 0.0784 * t346 + t353 * t355);
-        let t366 = t339 * t232 + t342 * t239 + 0.0784 * t353;
-        let minus_rate_dot_1_leg4 = t332 * (t366 + t346 * t355);
-        let t372 = 3.5714285714285716 * (t331 * t346)
-            + 1.7857142857142858 * (t354 * minus_rate_dot_1_leg4);
-        let t375 = 3.5714285714285716 * t366;
-        let t378 = minus_rate_1_leg4 + rate_2_leg4;
-        let t382 = parameters[54] * t378 + ::overact::math::signed(parameters[55], t378)
+        let t310 = parameters[36] * t283 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t276 + t296 - t309;
+        let t313 = g1_vx_leg1 * t99 - minus_g2_vx_leg1 * t112 + g2_vx_leg2 * t182
+            - minus_g1_vx_leg2 * t206 + g1_vx_leg3 * t297 - minus_g2_vx_leg3 * t310;
+        let t314 = t210 - 0.3950502153918333;
+        let t317 = t314 * t314 + t216;
+        let t319 = 0.0784 / t317 - 0.25;
+        ::overact::guard::reach(t319, "leg4")?;
+        let t320 = ::overact::math::sqrt(t319);
+        let t322 = 0.5 * t314 - t214 * t320;
+        let t323 = t317 * t320;
+        ::overact::guard::leg(t323, 0.07839913810297301, "leg4")?;
+        let t324 = 1.0 / t323;
+        let g2_vx_leg4 = t322 * t324;
+        let t328 = t229 + t314 * t320;
+        let t331 = t314 - t322;
+        let minus_g1_vx_leg4 = t331 * t324;
+        let t334 = t214 - t328;
+        let minus_g1_vy_leg4 = t334 * t324;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t237 + minus_g1_vy_leg4 * t240;
+        let t338 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let g2_vy_leg4 = t328 * t324;
+        let rate_2_leg4 = g2_vx_leg4 * t237 + g2_vy_leg4 * t240;
+        let t345 = rate_2_leg4 * rate_2_leg4;
+        let t346 = t317 - 0.1568;
+        let t347 = 0.5 * t346;
+        let rate_dot_2_leg4 = t324
+            * (t322 * t227 + t328 * t233 + 0.0784 * t338 + t345 * t347);
+        let t352 = 3.5714285714285716 * t323;
+        let t358 = t331 * t227 + t334 * t233 + 0.0784 * t345;
+        let minus_rate_dot_1_leg4 = t324 * (t358 + t338 * t347);
+        let t362 = 1.7857142857142858 * t346;
+        let t364 = t338 * t352 + minus_rate_dot_1_leg4 * t362;
+        let t367 = 3.5714285714285716 * t358;
+        let t370 = minus_rate_1_leg4 + rate_2_leg4;
+        let t374 = parameters[54] * t370 + ::overact::math::signed(parameters[55], t370)
             + parameters[56];
-        let t384 = twist[2] - rate_2_leg4;
-        let t388 = parameters[57] * t384 + ::overact::math::signed(parameters[58], t384)
+        let t376 = twist[2] - rate_2_leg4;
+        let t380 = parameters[57] * t376 + ::overact::math::signed(parameters[58], t376)
             + parameters[59];
-        let t389 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t372
-            - parameters[52] * t375 + t382 - t388;
-        let t413 = 1.7857142857142858 * t354
-            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t353
-                - parameters[53] * t372)
-            - 3.5714285714285716 * t331
-                * (parameters[53] * t375
-                    - (parameters[51] * t353 + parameters[52] * rate_dot_2_leg4));
-        let t415 = parameters[49]
+        let t381 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t364
+            - parameters[52] * t367 + t374 - t380;
+        let t403 = t362
+            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t345
+                - parameters[53] * t364)
+            - t352
+                * (parameters[53] * t367
+                    - (parameters[51] * t345 + parameters[52] * rate_dot_2_leg4));
+        let t405 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + parameters[47] * minus_rate_1_leg4
                 + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
-            - parameters[45] * minus_rate_dot_1_leg4 + t413 - t382;
-        let t421 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t423 = twist[2] * twist[2];
-        let t433 = parameters[63] * t421
-            - (parameters[61] * t423 + acceleration[2] * parameters[62])
-            - parameters[65] * t423 - acceleration[2] * parameters[66]
-            + parameters[67] * t421;
-        let t440 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t448 = acceleration[2] * parameters[61] - parameters[62] * t423
-            + parameters[63] * t440 + acceleration[2] * parameters[65]
-            - parameters[66] * t423 + parameters[67] * t440;
-        let t451 = t321 + g2_vx_leg4 * t389 - minus_g1_vx_leg4 * t415 + c_phi * t433
-            - s_phi * t448;
-        let t458 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            - parameters[45] * minus_rate_dot_1_leg4 + t403 - t374;
+        let t409 = 9.090909090909092 * t24;
+        let t411 = 9.090909090909092 * t34;
+        let t421 = parameters[62] * t409 - parameters[61] * t411
+            + acceleration[0] * parameters[63] - parameters[65] * t411
+            + parameters[66] * t409 + acceleration[0] * parameters[67];
+        let t422 = t313 + g2_vx_leg4 * t381 - minus_g1_vx_leg4 * t405 + t421;
+        let t429 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t458, 25.429161076750646, "actuators")?;
-        let t459 = 1.0 / t458;
-        let t467 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t429, 25.429161076750646, "actuators")?;
+        let t430 = 1.0 / t429;
+        let t438 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t468 = t467 * t459;
-        let t477 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t439 = t438 * t430;
+        let t448 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t467 * t468;
-        ::overact::guard::platform(t477, 25.592368899353342, "actuators")?;
-        let t478 = 1.0 / t477;
-        let t489 = g1_vy_leg1 * t101 - minus_g2_vy_leg1 * t114 + g2_vy_leg2 * t184
-            - minus_g1_vy_leg2 * t210 + g1_vy_leg3 * t305 - minus_g2_vy_leg3 * t318;
-        let t499 = t489 + g2_vy_leg4 * t389 - minus_g1_vy_leg4 * t415 + s_phi * t433
-            + c_phi * t448 - t451 * t468;
+            - t438 * t439;
+        ::overact::guard::platform(t448, 25.592368899353342, "actuators")?;
+        let t449 = 1.0 / t448;
+        let t460 = g1_vy_leg1 * t99 - minus_g2_vy_leg1 * t112 + g2_vy_leg2 * t182
+            - minus_g1_vy_leg2 * t206 + g1_vy_leg3 * t297 - minus_g2_vy_leg3 * t310;
+        let t475 = acceleration[1] * parameters[63]
+            - (parameters[61] * t409 + parameters[62] * t411) - parameters[65] * t409
+            - parameters[66] * t411 + acceleration[1] * parameters[67];
+        let t478 = t460 + g2_vy_leg4 * t381 - minus_g1_vy_leg4 * t405 + t475
+            - t422 * t439;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t526 = g1_vx_leg3 * g1_wz_leg3
+        let t505 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t527 = t526 * t459;
-        let t529 = g1_vy_leg3 * g1_wz_leg3
+        let t506 = t505 * t430;
+        let t508 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t467 * t527;
-        let t530 = t529 * t478;
-        let t541 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t526 * t527
-            - t529 * t530;
-        ::overact::guard::platform(t541, 0.3076928490286828, "actuators")?;
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t438 * t506;
+        let t509 = t508 * t449;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t564 = g2_wz_leg1 * t114 - minus_g1_wz_leg1 * t101 + t113 + g1_wz_leg2 * t210
-            - minus_g2_wz_leg2 * t184 + t183 + g1_wz_leg3 * t305
-            - minus_g2_wz_leg3 * t318 + t317;
+        let t532 = g2_wz_leg1 * t112 - minus_g1_wz_leg1 * t99 + t111 + g1_wz_leg2 * t206
+            - minus_g2_wz_leg2 * t182 + t181 + g1_wz_leg3 * t297
+            - minus_g2_wz_leg3 * t310 + t309;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t583 = acceleration[2] * parameters[60] + parameters[61] * t440
-            - parameters[62] * t421 + acceleration[2] * parameters[64]
-            + parameters[65] * t440 - parameters[66] * t421;
-        let t588 = t564 + g2_wz_leg4 * t389 - minus_g1_wz_leg4 * t415 + t388 + t583
-            - t451 * t527 - t530 * t499;
-        let t589 = t588 / t541;
-        let t591 = t478 * t499 - t530 * t589;
-        let t595 = t451 * t459 - t468 * t591 - t527 * t589;
+        let t544 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t549 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t557 = acceleration[2] * parameters[60] + parameters[61] * t544
+            - parameters[62] * t549 + acceleration[2] * parameters[64]
+            + parameters[65] * t544 - parameters[66] * t549;
+        let t562 = t532 + g2_wz_leg4 * t381 - minus_g1_wz_leg4 * t405 + t380 + t557
+            - t422 * t506 - t509 * t478;
+        let t573 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t505 * t506
+            - t508 * t509;
+        ::overact::guard::platform(t573, 0.3076928490286828, "actuators")?;
+        let t574 = t562 / t573;
+        let t576 = t449 * t478 - t509 * t574;
+        let t580 = t422 * t430 - t439 * t576 - t506 * t574;
         Ok([
-            g1_vx_leg1 * t595 + g1_vy_leg1 * t591 - minus_g1_wz_leg1 * t589,
-            g1_wz_leg2 * t589 - (minus_g1_vx_leg2 * t595 + minus_g1_vy_leg2 * t591),
-            g1_vx_leg3 * t595 + g1_vy_leg3 * t591 + g1_wz_leg3 * t589,
-            -(minus_g1_vx_leg4 * t595 + minus_g1_vy_leg4 * t591
-                + minus_g1_wz_leg4 * t589),
+            g1_vx_leg1 * t580 + g1_vy_leg1 * t576 - minus_g1_wz_leg1 * t574,
+            g1_wz_leg2 * t574 - (minus_g1_vx_leg2 * t580 + minus_g1_vy_leg2 * t576),
+            g1_vx_leg3 * t580 + g1_vy_leg3 * t576 + g1_wz_leg3 * t574,
+            -(minus_g1_vx_leg4 * t580 + minus_g1_vy_leg4 * t576
+                + minus_g1_wz_leg4 * t574),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5820,7 +5780,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 544 operations (231 additions, 306 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 570 intermediates.
+    /// 533 operations (227 additions, 299 multiplications, 7 divisions), 0 square roots, 9 trigonometric pairs, 12 signs, 559 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5845,20 +5805,18 @@ impl DualV {
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 3.5714285714285716 / s2_leg1;
         let g1_vx_leg1 = c12_leg1 * t10;
-        let t14 = 0.11 * c_phi;
-        let t15 = t14 * acceleration[2];
-        let t17 = 0.11 * s_phi;
-        let t18 = t17 * twist[2];
-        let t19 = twist[2] * t18;
-        let t20 = acceleration[0] - t15 + t19;
-        let t22 = t17 * acceleration[2];
-        let t24 = t14 * twist[2];
-        let t25 = twist[2] * t24;
-        let t26 = acceleration[1] - t22 - t25;
+        let t14 = 0.11 * s_phi;
+        let t15 = t14 * twist[2];
+        let t17 = 0.11 * c_phi;
+        let t19 = twist[2] * t15 - t17 * acceleration[2];
+        let t20 = acceleration[0] + t19;
+        let t22 = t17 * twist[2];
+        let t25 = twist[2] * t22 + t14 * acceleration[2];
+        let t26 = acceleration[1] - t25;
         let minus_g2_vx_leg1 = c1_leg1 * t10;
-        let t30 = twist[0] - t24;
+        let t30 = twist[0] - t22;
         let minus_g2_vy_leg1 = s1_leg1 * t10;
-        let t33 = twist[1] - t18;
+        let t33 = twist[1] - t15;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
         let t36 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t38 = c12_leg1 * t20 + s12_leg1 * t26 + 0.28 * t36;
@@ -5870,202 +5828,201 @@ impl DualV {
         let t60 = 0.28 * t43;
         let minus_rate_dot_2_leg1 = t10
             * (c1_leg1 * t20 + s1_leg1 * t26 + t60 + t36 * t44);
-        let t74 = s2_leg1 * t60 + c2_leg1 * (0.28 * rate_dot_1_leg1);
-        let t81 = 0.28 * s2_leg1
+        let t73 = s2_leg1 * t60 + t44 * rate_dot_1_leg1;
+        let t80 = 0.28 * s2_leg1
             * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t36
                 + parameters[8] * t38)
             + t44
-                * (parameters[8] * t74
+                * (parameters[8] * t73
                     - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t36));
-        let t83 = rate_1_leg1 + minus_rate_2_leg1;
-        let t87 = parameters[11]
-            - (parameters[9] * t83 + ::overact::math::signed(parameters[10], t83));
-        let t88 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t82 = rate_1_leg1 + minus_rate_2_leg1;
+        let t86 = parameters[11]
+            - (parameters[9] * t82 + ::overact::math::signed(parameters[10], t82));
+        let t87 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t81
-            - t87;
-        let t96 = minus_rate_2_leg1 + twist[2];
-        let t100 = parameters[12] * t96 + ::overact::math::signed(parameters[13], t96)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t80
+            - t86;
+        let t95 = minus_rate_2_leg1 + twist[2];
+        let t99 = parameters[12] * t95 + ::overact::math::signed(parameters[13], t95)
             + parameters[14];
-        let t101 = parameters[6] * t74 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t38 + t87 - t100;
+        let t100 = parameters[6] * t73 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t38 + t86 - t99;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t114 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t114;
-        let minus_g2_vx_leg2 = c1_leg2 * t114;
-        let minus_g2_vy_leg2 = s1_leg2 * t114;
+        let t113 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t113;
+        let minus_g2_vx_leg2 = c1_leg2 * t113;
+        let minus_g2_vy_leg2 = s1_leg2 * t113;
         let minus_rate_2_leg2 = minus_g2_vx_leg2 * t30 + minus_g2_vy_leg2 * t33;
-        let t124 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t126 = c12_leg2 * t20 + s12_leg2 * t26 + 0.28 * t124;
-        let g1_vy_leg2 = s12_leg2 * t114;
+        let t123 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t125 = c12_leg2 * t20 + s12_leg2 * t26 + 0.28 * t123;
+        let g1_vy_leg2 = s12_leg2 * t113;
         let rate_1_leg2 = g1_vx_leg2 * t30 + g1_vy_leg2 * t33;
-        let t131 = rate_1_leg2 * rate_1_leg2;
-        let t132 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t114 * (t126 + t131 * t132);
-        let t148 = 0.28 * t131;
-        let minus_rate_dot_2_leg2 = t114
-            * (c1_leg2 * t20 + s1_leg2 * t26 + t148 + t124 * t132);
-        let t162 = s2_leg2 * t148 + c2_leg2 * (0.28 * rate_dot_1_leg2);
-        let t169 = 0.28 * s2_leg2
-            * (parameters[22] * minus_rate_dot_2_leg2 - parameters[21] * t124
-                + parameters[23] * t126)
-            + t132
-                * (parameters[23] * t162
-                    - (parameters[21] * minus_rate_dot_2_leg2 + parameters[22] * t124));
-        let t171 = rate_1_leg2 + minus_rate_2_leg2;
-        let t175 = parameters[26]
-            - (parameters[24] * t171 + ::overact::math::signed(parameters[25], t171));
-        let t176 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        let t130 = rate_1_leg2 * rate_1_leg2;
+        let t131 = 0.28 * c2_leg2;
+        let rate_dot_1_leg2 = t113 * (t125 + t130 * t131);
+        let t147 = 0.28 * t130;
+        let minus_rate_dot_2_leg2 = t113
+            * (c1_leg2 * t20 + s1_leg2 * t26 + t147 + t123 * t131);
+        let t160 = s2_leg2 * t147 + t131 * rate_dot_1_leg2;
+        let t167 = 0.28 * s2_leg2
+            * (parameters[22] * minus_rate_dot_2_leg2 - parameters[21] * t123
+                + parameters[23] * t125)
+            + t131
+                * (parameters[23] * t160
+                    - (parameters[21] * minus_rate_dot_2_leg2 + parameters[22] * t123));
+        let t169 = rate_1_leg2 + minus_rate_2_leg2;
+        let t173 = parameters[26]
+            - (parameters[24] * t169 + ::overact::math::signed(parameters[25], t169));
+        let t174 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
             + parameters[17] * rate_1_leg2
             + ::overact::math::signed(parameters[18], rate_1_leg2) + parameters[19]
-            + t169 - t175;
-        let t184 = minus_rate_2_leg2 + twist[2];
-        let t188 = parameters[27] * t184 + ::overact::math::signed(parameters[28], t184)
+            + t167 - t173;
+        let t182 = minus_rate_2_leg2 + twist[2];
+        let t186 = parameters[27] * t182 + ::overact::math::signed(parameters[28], t182)
             + parameters[29];
-        let t189 = parameters[21] * t162 - parameters[20] * minus_rate_dot_2_leg2
-            - parameters[22] * t126 + t175 - t188;
+        let t187 = parameters[21] * t160 - parameters[20] * minus_rate_dot_2_leg2
+            - parameters[22] * t125 + t173 - t186;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t203 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t203;
-        let t206 = acceleration[0] + t15 - t19;
-        let t209 = acceleration[1] + t22 + t25;
-        let minus_g2_vx_leg3 = c1_leg3 * t203;
-        let t213 = twist[0] + t24;
-        let minus_g2_vy_leg3 = s1_leg3 * t203;
-        let t216 = twist[1] + t18;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t213 + minus_g2_vy_leg3 * t216;
-        let t219 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t221 = c12_leg3 * t206 + s12_leg3 * t209 + 0.28 * t219;
-        let g1_vy_leg3 = s12_leg3 * t203;
-        let rate_1_leg3 = g1_vx_leg3 * t213 + g1_vy_leg3 * t216;
-        let t226 = rate_1_leg3 * rate_1_leg3;
-        let t227 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t203 * (t221 + t226 * t227);
-        let t243 = 0.28 * t226;
-        let minus_rate_dot_2_leg3 = t203
-            * (c1_leg3 * t206 + s1_leg3 * t209 + t243 + t219 * t227);
-        let t257 = s2_leg3 * t243 + c2_leg3 * (0.28 * rate_dot_1_leg3);
-        let t264 = 0.28 * s2_leg3
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t219
-                + parameters[38] * t221)
-            + t227
-                * (parameters[38] * t257
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t219));
-        let t266 = rate_1_leg3 + minus_rate_2_leg3;
-        let t270 = parameters[41]
-            - (parameters[39] * t266 + ::overact::math::signed(parameters[40], t266));
-        let t271 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t201 = 3.5714285714285716 / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * t201;
+        let t203 = acceleration[0] - t19;
+        let t205 = acceleration[1] + t25;
+        let minus_g2_vx_leg3 = c1_leg3 * t201;
+        let t209 = twist[0] + t22;
+        let minus_g2_vy_leg3 = s1_leg3 * t201;
+        let t212 = twist[1] + t15;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t209 + minus_g2_vy_leg3 * t212;
+        let t215 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t217 = c12_leg3 * t203 + s12_leg3 * t205 + 0.28 * t215;
+        let g1_vy_leg3 = s12_leg3 * t201;
+        let rate_1_leg3 = g1_vx_leg3 * t209 + g1_vy_leg3 * t212;
+        let t222 = rate_1_leg3 * rate_1_leg3;
+        let t223 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t201 * (t217 + t222 * t223);
+        let t239 = 0.28 * t222;
+        let minus_rate_dot_2_leg3 = t201
+            * (c1_leg3 * t203 + s1_leg3 * t205 + t239 + t215 * t223);
+        let t252 = s2_leg3 * t239 + t223 * rate_dot_1_leg3;
+        let t259 = 0.28 * s2_leg3
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t215
+                + parameters[38] * t217)
+            + t223
+                * (parameters[38] * t252
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t215));
+        let t261 = rate_1_leg3 + minus_rate_2_leg3;
+        let t265 = parameters[41]
+            - (parameters[39] * t261 + ::overact::math::signed(parameters[40], t261));
+        let t266 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t264 - t270;
-        let t279 = minus_rate_2_leg3 + twist[2];
-        let t283 = parameters[42] * t279 + ::overact::math::signed(parameters[43], t279)
+            + t259 - t265;
+        let t274 = minus_rate_2_leg3 + twist[2];
+        let t278 = parameters[42] * t274 + ::overact::math::signed(parameters[43], t274)
             + parameters[44];
-        let t284 = parameters[36] * t257 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t221 + t270 - t283;
-        let t287 = g1_vx_leg1 * t88 - minus_g2_vx_leg1 * t101 + g1_vx_leg2 * t176
-            - minus_g2_vx_leg2 * t189 + g1_vx_leg3 * t271 - minus_g2_vx_leg3 * t284;
+        let t279 = parameters[36] * t252 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t217 + t265 - t278;
+        let t282 = g1_vx_leg1 * t87 - minus_g2_vx_leg1 * t100 + g1_vx_leg2 * t174
+            - minus_g2_vx_leg2 * t187 + g1_vx_leg3 * t266 - minus_g2_vx_leg3 * t279;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t298 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t298;
-        let minus_g2_vx_leg4 = c1_leg4 * t298;
-        let minus_g2_vy_leg4 = s1_leg4 * t298;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t213 + minus_g2_vy_leg4 * t216;
-        let t308 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t310 = c12_leg4 * t206 + s12_leg4 * t209 + 0.28 * t308;
-        let g1_vy_leg4 = s12_leg4 * t298;
-        let rate_1_leg4 = g1_vx_leg4 * t213 + g1_vy_leg4 * t216;
-        let t315 = rate_1_leg4 * rate_1_leg4;
-        let t316 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t298 * (t310 + t315 * t316);
-        let t332 = 0.28 * t315;
-        let minus_rate_dot_2_leg4 = t298
-            * (c1_leg4 * t206 + s1_leg4 * t209 + t332 + t308 * t316);
-        let t346 = s2_leg4 * t332 + c2_leg4 * (0.28 * rate_dot_1_leg4);
-        let t353 = 0.28 * s2_leg4
-            * (parameters[52] * minus_rate_dot_2_leg4 - parameters[51] * t308
-                + parameters[53] * t310)
-            + t316
-                * (parameters[53] * t346
-                    - (parameters[51] * minus_rate_dot_2_leg4 + parameters[52] * t308));
-        let t355 = rate_1_leg4 + minus_rate_2_leg4;
-        let t359 = parameters[56]
-            - (parameters[54] * t355 + ::overact::math::signed(parameters[55], t355));
-        let t360 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+        let t293 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t293;
+        let minus_g2_vx_leg4 = c1_leg4 * t293;
+        let minus_g2_vy_leg4 = s1_leg4 * t293;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t209 + minus_g2_vy_leg4 * t212;
+        let t303 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t305 = c12_leg4 * t203 + s12_leg4 * t205 + 0.28 * t303;
+        let g1_vy_leg4 = s12_leg4 * t293;
+        let rate_1_leg4 = g1_vx_leg4 * t209 + g1_vy_leg4 * t212;
+        let t310 = rate_1_leg4 * rate_1_leg4;
+        let t311 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t293 * (t305 + t310 * t311);
+        let t327 = 0.28 * t310;
+        let minus_rate_dot_2_leg4 = t293
+            * (c1_leg4 * t203 + s1_leg4 * t205 + t327 + t303 * t311);
+        let t340 = s2_leg4 * t327 + t311 * rate_dot_1_leg4;
+        let t347 = 0.28 * s2_leg4
+            * (parameters[52] * minus_rate_dot_2_leg4 - parameters[51] * t303
+                + parameters[53] * t305)
+            + t311
+                * (parameters[53] * t340
+                    - (parameters[51] * minus_rate_dot_2_leg4 + parameters[52] * t303));
+        let t349 = rate_1_leg4 + minus_rate_2_leg4;
+        let t353 = parameters[56]
+            - (parameters[54] * t349 + ::overact::math::signed(parameters[55], t349));
+        let t354 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
             + parameters[47] * rate_1_leg4
             + ::overact::math::signed(parameters[48], rate_1_leg4) + parameters[49]
-            + t353 - t359;
-        let t368 = minus_rate_2_leg4 + twist[2];
-        let t372 = parameters[57] * t368 + ::overact::math::signed(parameters[58], t368)
+            + t347 - t353;
+        let t362 = minus_rate_2_leg4 + twist[2];
+        let t366 = parameters[57] * t362 + ::overact::math::signed(parameters[58], t362)
             + parameters[59];
-        let t373 = parameters[51] * t346 - parameters[50] * minus_rate_dot_2_leg4
-            - parameters[52] * t310 + t359 - t372;
-        let t379 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t381 = twist[2] * twist[2];
-        let t391 = parameters[63] * t379
-            - (parameters[61] * t381 + acceleration[2] * parameters[62])
-            - parameters[65] * t381 - acceleration[2] * parameters[66]
-            + parameters[67] * t379;
-        let t398 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t406 = acceleration[2] * parameters[61] - parameters[62] * t381
-            + parameters[63] * t398 + acceleration[2] * parameters[65]
-            - parameters[66] * t381 + parameters[67] * t398;
-        let t409 = t287 + g1_vx_leg4 * t360 - minus_g2_vx_leg4 * t373 + c_phi * t391
-            - s_phi * t406;
-        let t416 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t367 = parameters[51] * t340 - parameters[50] * minus_rate_dot_2_leg4
+            - parameters[52] * t305 + t353 - t366;
+        let t371 = 9.090909090909092 * t19;
+        let t373 = 9.090909090909092 * t25;
+        let t383 = parameters[62] * t371 - parameters[61] * t373
+            + acceleration[0] * parameters[63] - parameters[65] * t373
+            + parameters[66] * t371 + acceleration[0] * parameters[67];
+        let t384 = t282 + g1_vx_leg4 * t354 - minus_g2_vx_leg4 * t367 + t383;
+        let t391 = g1_vx_leg1 * g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t416, 25.429161076041257, "actuators")?;
-        let t417 = 1.0 / t416;
-        let t425 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
+        ::overact::guard::platform(t391, 25.429161076041257, "actuators")?;
+        let t392 = 1.0 / t391;
+        let t400 = g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + g1_vx_leg4 * g1_vy_leg4;
-        let t426 = t425 * t417;
-        let t435 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t425 * t426;
-        ::overact::guard::platform(t435, 25.592368900079006, "actuators")?;
-        let t436 = 1.0 / t435;
-        let t447 = g1_vy_leg1 * t88 - minus_g2_vy_leg1 * t101 + g1_vy_leg2 * t176
-            - minus_g2_vy_leg2 * t189 + g1_vy_leg3 * t271 - minus_g2_vy_leg3 * t284;
-        let t457 = t447 + g1_vy_leg4 * t360 - minus_g2_vy_leg4 * t373 + s_phi * t391
-            + c_phi * t406 - t409 * t426;
-        let g1_wz_leg3 = t17 * g1_vy_leg3 + t14 * g1_vx_leg3;
-        let minus_g1_wz_leg1 = g1_vy_leg1 * t17 + g1_vx_leg1 * t14;
-        let minus_g1_wz_leg2 = t17 * g1_vy_leg2 + t14 * g1_vx_leg2;
-        let g1_wz_leg4 = t17 * g1_vy_leg4 + t14 * g1_vx_leg4;
-        let t484 = g1_vx_leg3 * g1_wz_leg3
+        let t401 = t400 * t392;
+        let t410 = g1_vy_leg1 * g1_vy_leg1 + g1_vy_leg2 * g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t400 * t401;
+        ::overact::guard::platform(t410, 25.592368900079006, "actuators")?;
+        let t411 = 1.0 / t410;
+        let t422 = g1_vy_leg1 * t87 - minus_g2_vy_leg1 * t100 + g1_vy_leg2 * t174
+            - minus_g2_vy_leg2 * t187 + g1_vy_leg3 * t266 - minus_g2_vy_leg3 * t279;
+        let t437 = acceleration[1] * parameters[63]
+            - (parameters[61] * t371 + parameters[62] * t373) - parameters[65] * t371
+            - parameters[66] * t373 + acceleration[1] * parameters[67];
+        let t440 = t422 + g1_vy_leg4 * t354 - minus_g2_vy_leg4 * t367 + t437
+            - t384 * t401;
+        let g1_wz_leg3 = t14 * g1_vy_leg3 + t17 * g1_vx_leg3;
+        let minus_g1_wz_leg1 = g1_vy_leg1 * t14 + g1_vx_leg1 * t17;
+        let minus_g1_wz_leg2 = t14 * g1_vy_leg2 + t17 * g1_vx_leg2;
+        let g1_wz_leg4 = t14 * g1_vy_leg4 + t17 * g1_vx_leg4;
+        let t467 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + g1_vx_leg2 * minus_g1_wz_leg2)
             + g1_vx_leg4 * g1_wz_leg4;
-        let t485 = t484 * t417;
-        let t487 = g1_vy_leg3 * g1_wz_leg3
+        let t468 = t467 * t392;
+        let t470 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + g1_vy_leg2 * minus_g1_wz_leg2)
-            + g1_vy_leg4 * g1_wz_leg4 - t425 * t485;
-        let t488 = t487 * t436;
-        let t499 = minus_g1_wz_leg1 * minus_g1_wz_leg1
+            + g1_vy_leg4 * g1_wz_leg4 - t400 * t468;
+        let t471 = t470 * t411;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t14 + minus_g2_vx_leg1 * t17;
+        let g2_wz_leg2 = t14 * minus_g2_vy_leg2 + t17 * minus_g2_vx_leg2;
+        let minus_g2_wz_leg3 = t14 * minus_g2_vy_leg3 + t17 * minus_g2_vx_leg3;
+        let t494 = g2_wz_leg1 * t100 - minus_g1_wz_leg1 * t87 + t99 + g2_wz_leg2 * t187
+            - minus_g1_wz_leg2 * t174 + t186 + g1_wz_leg3 * t266
+            - minus_g2_wz_leg3 * t279 + t278;
+        let minus_g2_wz_leg4 = t14 * minus_g2_vy_leg4 + t17 * minus_g2_vx_leg4;
+        let t506 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t511 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t519 = acceleration[2] * parameters[60] + parameters[61] * t506
+            - parameters[62] * t511 + acceleration[2] * parameters[64]
+            + parameters[65] * t506 - parameters[66] * t511;
+        let t524 = t494 + g1_wz_leg4 * t354 - minus_g2_wz_leg4 * t367 + t366 + t519
+            - t384 * t468 - t471 * t440;
+        let t535 = minus_g1_wz_leg1 * minus_g1_wz_leg1
             + minus_g1_wz_leg2 * minus_g1_wz_leg2 + g1_wz_leg3 * g1_wz_leg3
-            + g1_wz_leg4 * g1_wz_leg4 - t484 * t485 - t487 * t488;
-        ::overact::guard::platform(t499, 0.30769284902009914, "actuators")?;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t17 + minus_g2_vx_leg1 * t14;
-        let g2_wz_leg2 = t17 * minus_g2_vy_leg2 + t14 * minus_g2_vx_leg2;
-        let minus_g2_wz_leg3 = t17 * minus_g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t522 = g2_wz_leg1 * t101 - minus_g1_wz_leg1 * t88 + t100 + g2_wz_leg2 * t189
-            - minus_g1_wz_leg2 * t176 + t188 + g1_wz_leg3 * t271
-            - minus_g2_wz_leg3 * t284 + t283;
-        let minus_g2_wz_leg4 = t17 * minus_g2_vy_leg4 + t14 * minus_g2_vx_leg4;
-        let t541 = acceleration[2] * parameters[60] + parameters[61] * t398
-            - parameters[62] * t379 + acceleration[2] * parameters[64]
-            + parameters[65] * t398 - parameters[66] * t379;
-        let t546 = t522 + g1_wz_leg4 * t360 - minus_g2_wz_leg4 * t373 + t372 + t541
-            - t409 * t485 - t488 * t457;
-        let t547 = t546 / t499;
-        let t549 = t436 * t457 - t488 * t547;
-        let t553 = t409 * t417 - t426 * t549 - t485 * t547;
+            + g1_wz_leg4 * g1_wz_leg4 - t467 * t468 - t470 * t471;
+        ::overact::guard::platform(t535, 0.30769284902009914, "actuators")?;
+        let t536 = t524 / t535;
+        let t538 = t411 * t440 - t471 * t536;
+        let t542 = t384 * t392 - t401 * t538 - t468 * t536;
         Ok([
-            g1_vx_leg1 * t553 + g1_vy_leg1 * t549 - minus_g1_wz_leg1 * t547,
-            g1_vx_leg2 * t553 + g1_vy_leg2 * t549 - minus_g1_wz_leg2 * t547,
-            g1_vx_leg3 * t553 + g1_vy_leg3 * t549 + g1_wz_leg3 * t547,
-            g1_vx_leg4 * t553 + g1_vy_leg4 * t549 + g1_wz_leg4 * t547,
+            g1_vx_leg1 * t542 + g1_vy_leg1 * t538 - minus_g1_wz_leg1 * t536,
+            g1_vx_leg2 * t542 + g1_vy_leg2 * t538 - minus_g1_wz_leg2 * t536,
+            g1_vx_leg3 * t542 + g1_vy_leg3 * t538 + g1_wz_leg3 * t536,
+            g1_vx_leg4 * t542 + g1_vy_leg4 * t538 + g1_wz_leg4 * t536,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6079,7 +6036,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 722 operations (315 additions, 396 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 736 intermediates.
+    /// 684 operations (303 additions, 370 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 698 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6210,7 +6167,6 @@ impl DualV {
         let t179 = rate_3_leg1 * t178;
         let t181 = t2 * rate_3_leg1;
         let t182 = rate_3_leg1 * t181;
-        let t184 = t75 * t179 - t17 * t182;
         let minus_g2_vx_leg1 = t16 * t19;
         let t189 = t145 * t174 - t146 * rate_3_leg1;
         let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
@@ -6225,7 +6181,7 @@ impl DualV {
         let t207 = t11 - 0.1568;
         let t208 = 0.5 * t207;
         let t209 = t206 * t208;
-        let minus_rate_dot_1_leg1 = t19 * (t184 - t201 - t209);
+        let minus_rate_dot_1_leg1 = t19 * (t75 * t179 - t17 * t182 - t201 - t209);
         let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
         let g2_vx_leg2 = t30 * t33;
         let g2_vy_leg2 = t82 * t33;
@@ -6274,163 +6230,155 @@ impl DualV {
         let rate_dot_3_leg1 = t149 * t306;
         let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
         let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
-        let t314 = t6 * rate_dot_3_leg1;
-        let t316 = t313 - t314 + t182;
-        let t318 = t2 * rate_dot_3_leg1;
-        let t320 = t309 - t318 - t179;
+        let t315 = t182 - t6 * rate_dot_3_leg1;
+        let t316 = t313 + t315;
+        let t319 = t179 + t2 * rate_dot_3_leg1;
+        let t320 = t309 - t319;
         let t323 = t17 * t316 + t75 * t320 + t201;
         let rate_dot_1_leg1 = t19 * (t323 + t209);
-        let t338 = 0.0784 * t206;
-        let t340 = t200 * t208;
-        let minus_rate_dot_2_leg1 = t19 * (t16 * t316 + t74 * t320 + t338 + t340);
+        let t334 = 3.5714285714285716 * t18;
+        let minus_rate_dot_2_leg1 = t19
+            * (t16 * t316 + t74 * t320 + 0.0784 * t206 + t200 * t208);
         let t346 = 3.5714285714285716 * t323;
-        let t352 = 3.5714285714285716 * (t18 * t206);
-        let t355 = t352 + 1.7857142857142858 * (t207 * rate_dot_1_leg1);
-        let t362 = 3.5714285714285716 * t18
+        let t350 = 1.7857142857142858 * t207;
+        let t353 = t206 * t334 + rate_dot_1_leg1 * t350;
+        let t360 = t334
             * (parameters[7] * minus_rate_dot_2_leg1 - t200 * parameters[6]
                 + parameters[8] * t346)
-            + 1.7857142857142858 * t207
-                * (parameters[8] * t355
+            + t350
+                * (parameters[8] * t353
                     - (parameters[6] * minus_rate_dot_2_leg1 + t200 * parameters[7]));
-        let t364 = rate_1_leg1 + minus_rate_2_leg1;
-        let t368 = parameters[11]
-            - (t364 * parameters[9] + ::overact::math::signed(parameters[10], t364));
-        let t369 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t362 = rate_1_leg1 + minus_rate_2_leg1;
+        let t366 = parameters[11]
+            - (t362 * parameters[9] + ::overact::math::signed(parameters[10], t362));
+        let t367 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t362
-            - t368;
-        let t377 = minus_rate_2_leg1 + rate_3_leg1;
-        let t381 = t377 * parameters[12] + ::overact::math::signed(parameters[13], t377)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t360
+            - t366;
+        let t375 = minus_rate_2_leg1 + rate_3_leg1;
+        let t379 = t375 * parameters[12] + ::overact::math::signed(parameters[13], t375)
             + parameters[14];
-        let t382 = parameters[6] * t355 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t346 + t368 - t381;
+        let t380 = parameters[6] * t353 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t346 + t366 - t379;
         let rate_dot_2_leg2 = t33
             * (t30 * t316 + t82 * t320 + 0.0784 * t228 + t222 * t230);
-        let t399 = t31 * t316 + t83 * t320 + t223;
-        let minus_rate_dot_1_leg2 = t33 * (t399 + t231);
-        let t404 = 3.5714285714285716 * (t32 * t228)
-            + 1.7857142857142858 * (t229 * minus_rate_dot_1_leg2);
-        let t407 = 3.5714285714285716 * t399;
-        let t410 = minus_rate_1_leg2 + rate_2_leg2;
-        let t414 = t410 * parameters[24] + ::overact::math::signed(parameters[25], t410)
+        let t392 = 3.5714285714285716 * t32;
+        let t397 = t31 * t316 + t83 * t320 + t223;
+        let minus_rate_dot_1_leg2 = t33 * (t397 + t231);
+        let t400 = 1.7857142857142858 * t229;
+        let t402 = t228 * t392 + minus_rate_dot_1_leg2 * t400;
+        let t405 = 3.5714285714285716 * t397;
+        let t408 = minus_rate_1_leg2 + rate_2_leg2;
+        let t412 = t408 * parameters[24] + ::overact::math::signed(parameters[25], t408)
             + parameters[26];
-        let t416 = rate_3_leg1 - rate_2_leg2;
-        let t420 = t416 * parameters[27] + ::overact::math::signed(parameters[28], t416)
+        let t414 = rate_3_leg1 - rate_2_leg2;
+        let t418 = t414 * parameters[27] + ::overact::math::signed(parameters[28], t414)
             + parameters[29];
-        let t421 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t404
-            - parameters[22] * t407 + t414 - t420;
-        let t445 = 1.7857142857142858 * t229
+        let t419 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t402
+            - parameters[22] * t405 + t412 - t418;
+        let t441 = t400
             * (parameters[21] * rate_dot_2_leg2 - t222 * parameters[22]
-                - parameters[23] * t404)
-            - 3.5714285714285716 * t32
-                * (parameters[23] * t407
+                - parameters[23] * t402)
+            - t392
+                * (parameters[23] * t405
                     - (t222 * parameters[21] + parameters[22] * rate_dot_2_leg2));
-        let t447 = parameters[19]
+        let t443 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + minus_rate_1_leg2 * parameters[17]
                 + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
-            - parameters[15] * minus_rate_dot_1_leg2 + t445 - t414;
-        let t452 = t313 + t314 - t182;
-        let t455 = t309 + t318 + t179;
-        let t458 = t50 * t452 + t93 * t455 + t248;
-        let rate_dot_1_leg3 = t52 * (t458 + t256);
+            - parameters[15] * minus_rate_dot_1_leg2 + t441 - t412;
+        let t447 = t313 - t315;
+        let t449 = t309 + t319;
+        let t452 = t50 * t447 + t93 * t449 + t248;
+        let rate_dot_1_leg3 = t52 * (t452 + t256);
+        let t463 = 3.5714285714285716 * t51;
         let minus_rate_dot_2_leg3 = t52
-            * (t49 * t452 + t92 * t455 + 0.0784 * t253 + t247 * t255);
-        let t481 = 3.5714285714285716 * t458;
-        let t490 = 3.5714285714285716 * (t51 * t253)
-            + 1.7857142857142858 * (t254 * rate_dot_1_leg3);
-        let t497 = 3.5714285714285716 * t51
+            * (t49 * t447 + t92 * t449 + 0.0784 * t253 + t247 * t255);
+        let t475 = 3.5714285714285716 * t452;
+        let t479 = 1.7857142857142858 * t254;
+        let t482 = t253 * t463 + rate_dot_1_leg3 * t479;
+        let t489 = t463
             * (parameters[37] * minus_rate_dot_2_leg3 - t247 * parameters[36]
-                + parameters[38] * t481)
-            + 1.7857142857142858 * t254
-                * (parameters[38] * t490
+                + parameters[38] * t475)
+            + t479
+                * (parameters[38] * t482
                     - (parameters[36] * minus_rate_dot_2_leg3 + t247 * parameters[37]));
-        let t499 = rate_1_leg3 + minus_rate_2_leg3;
-        let t503 = parameters[41]
-            - (t499 * parameters[39] + ::overact::math::signed(parameters[40], t499));
-        let t504 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+        let t491 = rate_1_leg3 + minus_rate_2_leg3;
+        let t495 = parameters[41]
+            - (t491 * parameters[39] + ::overact::math::signed(parameters[40], t491));
+        let t496 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + rate_1_leg3 * parameters[32]
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t497 - t503;
-        let t512 = minus_rate_2_leg3 + rate_3_leg1;
-        let t516 = t512 * parameters[42] + ::overact::math::signed(parameters[43], t512)
+            + t489 - t495;
+        let t504 = minus_rate_2_leg3 + rate_3_leg1;
+        let t508 = t504 * parameters[42] + ::overact::math::signed(parameters[43], t504)
             + parameters[44];
-        let t517 = parameters[36] * t490 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t481 + t503 - t516;
-        let t520 = g1_vx_leg1 * t369 - minus_g2_vx_leg1 * t382 + g2_vx_leg2 * t421
-            - minus_g1_vx_leg2 * t447 + g1_vx_leg3 * t504 - minus_g2_vx_leg3 * t517;
+        let t509 = parameters[36] * t482 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t475 + t495 - t508;
+        let t512 = g1_vx_leg1 * t367 - minus_g2_vx_leg1 * t380 + g2_vx_leg2 * t419
+            - minus_g1_vx_leg2 * t443 + g1_vx_leg3 * t496 - minus_g2_vx_leg3 * t509;
         let rate_dot_2_leg4 = t67
-            * (t64 * t452 + t101 * t455 + 0.0784 * t276 + t270 * t278);
-        let t535 = t65 * t452 + t102 * t455 + t271;
-        let minus_rate_dot_1_leg4 = t67 * (t535 + t279);
-        let t540 = 3.5714285714285716 * (t66 * t276)
-            + 1.7857142857142858 * (t277 * minus_rate_dot_1_leg4);
-        let t543 = 3.5714285714285716 * t535;
-        let t546 = minus_rate_1_leg4 + rate_2_leg4;
-        let t550 = t546 * parameters[54] + ::overact::math::signed(parameters[55], t546)
+            * (t64 * t447 + t101 * t449 + 0.0784 * t276 + t270 * t278);
+        let t522 = 3.5714285714285716 * t66;
+        let t527 = t65 * t447 + t102 * t449 + t271;
+        let minus_rate_dot_1_leg4 = t67 * (t527 + t279);
+        let t530 = 1.7857142857142858 * t277;
+        let t532 = t276 * t522 + minus_rate_dot_1_leg4 * t530;
+        let t535 = 3.5714285714285716 * t527;
+        let t538 = minus_rate_1_leg4 + rate_2_leg4;
+        let t542 = t538 * parameters[54] + ::overact::math::signed(parameters[55], t538)
             + parameters[56];
-        let t552 = rate_3_leg1 - rate_2_leg4;
-        let t556 = t552 * parameters[57] + ::overact::math::signed(parameters[58], t552)
+        let t544 = rate_3_leg1 - rate_2_leg4;
+        let t548 = t544 * parameters[57] + ::overact::math::signed(parameters[58], t544)
             + parameters[59];
-        let t557 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t540
-            - parameters[52] * t543 + t550 - t556;
-        let t581 = 1.7857142857142858 * t277
+        let t549 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t532
+            - parameters[52] * t535 + t542 - t548;
+        let t571 = t530
             * (parameters[51] * rate_dot_2_leg4 - t270 * parameters[52]
-                - parameters[53] * t540)
-            - 3.5714285714285716 * t66
-                * (parameters[53] * t543
+                - parameters[53] * t532)
+            - t522
+                * (parameters[53] * t535
                     - (t270 * parameters[51] + parameters[52] * rate_dot_2_leg4));
-        let t583 = parameters[49]
+        let t573 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + minus_rate_1_leg4 * parameters[47]
                 + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
-            - parameters[45] * minus_rate_dot_1_leg4 + t581 - t550;
-        let t589 = c_phi * t313 + s_phi * t309;
-        let s12_leg1 = 3.5714285714285716 * t75;
-        let c12_leg1 = 3.5714285714285716 * t17;
-        let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
-        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let minus_rate_dot_2_leg1_2 = t19 * (t16 * t182 - t74 * t179 + t338 + t340);
-        let t614 = 9.090909090909092
-            * (s3_leg1 * (3.5714285714285716 * t184)
-                - minus_c3_leg1
-                    * (t352 - 1.7857142857142858 * (t207 * minus_rate_dot_1_leg1)
-                        - 0.28 * minus_rate_dot_2_leg1_2));
-        let t624 = parameters[63] * t589
-            - (t614 * parameters[61] + rate_dot_3_leg1 * parameters[62])
-            - t614 * parameters[65] - rate_dot_3_leg1 * parameters[66]
-            + parameters[67] * t589;
-        let t631 = c_phi * t309 - s_phi * t313;
-        let t639 = rate_dot_3_leg1 * parameters[61] - t614 * parameters[62]
-            + parameters[63] * t631 + rate_dot_3_leg1 * parameters[65]
-            - t614 * parameters[66] + parameters[67] * t631;
-        let t642 = t520 + g2_vx_leg4 * t557 - minus_g1_vx_leg4 * t583 + c_phi * t624
-            - s_phi * t639;
-        let t654 = g1_vy_leg1 * t369 - minus_g2_vy_leg1 * t382 + g2_vy_leg2 * t421
-            - minus_g1_vy_leg2 * t447 + g1_vy_leg3 * t504 - minus_g2_vy_leg3 * t517;
-        let t664 = t654 + g2_vy_leg4 * t557 - minus_g1_vy_leg4 * t583 + s_phi * t624
-            + c_phi * t639 - t142 * t642;
+            - parameters[45] * minus_rate_dot_1_leg4 + t571 - t542;
+        let t577 = 9.090909090909092 * t315;
+        let t579 = 9.090909090909092 * t319;
+        let t589 = parameters[62] * t577 - parameters[61] * t579 + t313 * parameters[63]
+            - parameters[65] * t579 + parameters[66] * t577 + t313 * parameters[67];
+        let t590 = t512 + g2_vx_leg4 * t549 - minus_g1_vx_leg4 * t573 + t589;
+        let t602 = g1_vy_leg1 * t367 - minus_g2_vy_leg1 * t380 + g2_vy_leg2 * t419
+            - minus_g1_vy_leg2 * t443 + g1_vy_leg3 * t496 - minus_g2_vy_leg3 * t509;
+        let t617 = t309 * parameters[63]
+            - (parameters[61] * t577 + parameters[62] * t579) - parameters[65] * t577
+            - parameters[66] * t579 + t309 * parameters[67];
+        let t620 = t602 + g2_vy_leg4 * t549 - minus_g1_vy_leg4 * t573 + t617
+            - t142 * t590;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t688 = g2_wz_leg1 * t382 - minus_g1_wz_leg1 * t369 + t381 + g1_wz_leg2 * t447
-            - minus_g2_wz_leg2 * t421 + t420 + g1_wz_leg3 * t504
-            - minus_g2_wz_leg3 * t517 + t516;
+        let t644 = g2_wz_leg1 * t380 - minus_g1_wz_leg1 * t367 + t379 + g1_wz_leg2 * t443
+            - minus_g2_wz_leg2 * t419 + t418 + g1_wz_leg3 * t496
+            - minus_g2_wz_leg3 * t509 + t508;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t707 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t631
-            - parameters[62] * t589 + rate_dot_3_leg1 * parameters[64]
-            + parameters[65] * t631 - parameters[66] * t589;
-        let t712 = t688 + g2_wz_leg4 * t557 - minus_g1_wz_leg4 * t583 + t556 + t707
-            - t116 * t642 - t146 * t664;
-        let t713 = t149 * t712;
-        let t715 = t145 * t664 - t146 * t713;
-        let t719 = t71 * t642 - t142 * t715 - t116 * t713;
+        let t656 = c_phi * t309 - s_phi * t313;
+        let t661 = s_phi * t309 + c_phi * t313;
+        let t669 = rate_dot_3_leg1 * parameters[60] + parameters[61] * t656
+            - parameters[62] * t661 + rate_dot_3_leg1 * parameters[64]
+            + parameters[65] * t656 - parameters[66] * t661;
+        let t674 = t644 + g2_wz_leg4 * t549 - minus_g1_wz_leg4 * t573 + t548 + t669
+            - t116 * t590 - t146 * t620;
+        let t675 = t149 * t674;
+        let t677 = t145 * t620 - t146 * t675;
+        let t681 = t71 * t590 - t142 * t677 - t116 * t675;
         Ok([
-            g1_vx_leg1 * t719 + g1_vy_leg1 * t715 - minus_g1_wz_leg1 * t713,
-            g1_wz_leg2 * t713 - (minus_g1_vx_leg2 * t719 + minus_g1_vy_leg2 * t715),
-            g1_vx_leg3 * t719 + g1_vy_leg3 * t715 + g1_wz_leg3 * t713,
-            -(minus_g1_vx_leg4 * t719 + minus_g1_vy_leg4 * t715
-                + minus_g1_wz_leg4 * t713),
+            g1_vx_leg1 * t681 + g1_vy_leg1 * t677 - minus_g1_wz_leg1 * t675,
+            g1_wz_leg2 * t675 - (minus_g1_vx_leg2 * t681 + minus_g1_vy_leg2 * t677),
+            g1_vx_leg3 * t681 + g1_vy_leg3 * t677 + g1_wz_leg3 * t675,
+            -(minus_g1_vx_leg4 * t681 + minus_g1_vy_leg4 * t677
+                + minus_g1_wz_leg4 * t675),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6441,7 +6389,7 @@ impl DualV {
     ///
     /// Output: 3 x 3.
     ///
-    /// 489 operations (187 additions, 294 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 489 intermediates.
+    /// 475 operations (185 additions, 282 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 475 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6469,199 +6417,195 @@ impl DualV {
         let t24 = 3.5714285714285716 * t18;
         let minus_g2_vx_leg1 = t16 * t19;
         let c12_leg1 = 3.5714285714285716 * t17;
-        let t31 = t11 - 0.1568;
-        let t32 = 1.7857142857142858 * t31;
-        let t34 = 1.7857142857142858 * (t31 * g1_vx_leg1);
-        let t40 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
+        let t32 = 1.7857142857142858 * (t11 - 0.1568);
+        let t33 = g1_vx_leg1 * t32;
+        let t39 = g1_vx_leg1 * parameters[0] + g1_vx_leg1 * parameters[1]
             + t24 * (minus_g2_vx_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            + t32 * (parameters[8] * t34 - minus_g2_vx_leg1 * parameters[6]);
-        let t49 = t3 + 0.3950502153918333;
-        let t52 = t49 * t49 + t10;
-        let t54 = 0.0784 / t52 - 0.25;
-        ::overact::guard::reach(t54, "leg2")?;
-        let t55 = ::overact::math::sqrt(t54);
-        let t57 = 0.5 * t49 - t8 * t55;
-        let t58 = t52 * t55;
-        ::overact::guard::leg(t58, 0.07839913810297301, "leg2")?;
-        let t59 = 1.0 / t58;
-        let g2_vx_leg2 = t57 * t59;
-        let t62 = t52 - 0.1568;
-        let t63 = t49 - t57;
-        let minus_g1_vx_leg2 = t63 * t59;
-        let t66 = 1.7857142857142858 * (t62 * minus_g1_vx_leg2);
-        let c12_leg2 = 3.5714285714285716 * t63;
-        let t73 = 1.7857142857142858 * t62;
-        let t78 = 3.5714285714285716 * t58;
-        let t87 = t73 * (g2_vx_leg2 * parameters[21] - parameters[23] * t66)
-            - t78 * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
+            + t32 * (parameters[8] * t33 - minus_g2_vx_leg1 * parameters[6]);
+        let t48 = t3 + 0.3950502153918333;
+        let t51 = t48 * t48 + t10;
+        let t53 = 0.0784 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t56 = 0.5 * t48 - t8 * t54;
+        let t57 = t51 * t54;
+        ::overact::guard::leg(t57, 0.07839913810297301, "leg2")?;
+        let t58 = 1.0 / t57;
+        let g2_vx_leg2 = t56 * t58;
+        let t61 = t48 - t56;
+        let minus_g1_vx_leg2 = t61 * t58;
+        let t64 = 1.7857142857142858 * (t51 - 0.1568);
+        let t65 = minus_g1_vx_leg2 * t64;
+        let c12_leg2 = 3.5714285714285716 * t61;
+        let t76 = 3.5714285714285716 * t57;
+        let t85 = t64 * (g2_vx_leg2 * parameters[21] - parameters[23] * t65)
+            - t76 * (c12_leg2 * parameters[23] - g2_vx_leg2 * parameters[22])
             - (minus_g1_vx_leg2 * parameters[16] + minus_g1_vx_leg2 * parameters[15]);
-        let t90 = g1_vx_leg1 * t40
+        let t88 = g1_vx_leg1 * t39
             - minus_g2_vx_leg1
-                * (parameters[6] * t34 - minus_g2_vx_leg1 * parameters[5]
+                * (parameters[6] * t33 - minus_g2_vx_leg1 * parameters[5]
                     - c12_leg1 * parameters[7])
             + g2_vx_leg2
-                * (g2_vx_leg2 * parameters[20] - parameters[21] * t66
-                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t87;
-        let t91 = pose[0] + t2;
-        let t92 = t91 + 0.3950502153918333;
-        let t95 = pose[1] - t6 + 0.10970563941232059;
-        let t97 = t95 * t95;
-        let t98 = t92 * t92 + t97;
-        let t100 = 0.0784 / t98 - 0.25;
-        ::overact::guard::reach(t100, "leg3")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let t103 = 0.5 * t92 + t95 * t101;
-        let t104 = t92 - t103;
-        let t105 = t98 * t101;
-        ::overact::guard::leg(t105, 0.07839913810297301, "leg3")?;
-        let t106 = 1.0 / t105;
-        let g1_vx_leg3 = t104 * t106;
-        let t111 = 3.5714285714285716 * t105;
-        let minus_g2_vx_leg3 = t103 * t106;
-        let c12_leg3 = 3.5714285714285716 * t104;
-        let t118 = t98 - 0.1568;
-        let t119 = 1.7857142857142858 * t118;
-        let t121 = 1.7857142857142858 * (t118 * g1_vx_leg3);
-        let t127 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
-            + t111 * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
-            + t119 * (parameters[38] * t121 - minus_g2_vx_leg3 * parameters[36]);
-        let t137 = t91 - 0.3950502153918333;
-        let t140 = t137 * t137 + t97;
-        let t142 = 0.0784 / t140 - 0.25;
-        ::overact::guard::reach(t142, "leg4")?;
-        let t143 = ::overact::math::sqrt(t142);
-        let t145 = 0.5 * t137 - t95 * t143;
-        let t146 = t140 * t143;
-        ::overact::guard::leg(t146, 0.07839913810297301, "leg4")?;
-        let t147 = 1.0 / t146;
-        let g2_vx_leg4 = t145 * t147;
-        let t150 = t140 - 0.1568;
-        let t151 = t137 - t145;
-        let minus_g1_vx_leg4 = t151 * t147;
-        let t154 = 1.7857142857142858 * (t150 * minus_g1_vx_leg4);
-        let c12_leg4 = 3.5714285714285716 * t151;
-        let t161 = 1.7857142857142858 * t150;
-        let t166 = 3.5714285714285716 * t146;
-        let t175 = t161 * (g2_vx_leg4 * parameters[51] - parameters[53] * t154)
-            - t166 * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
+                * (g2_vx_leg2 * parameters[20] - parameters[21] * t65
+                    - c12_leg2 * parameters[22]) - minus_g1_vx_leg2 * t85;
+        let t89 = pose[0] + t2;
+        let t90 = t89 + 0.3950502153918333;
+        let t93 = pose[1] - t6 + 0.10970563941232059;
+        let t95 = t93 * t93;
+        let t96 = t90 * t90 + t95;
+        let t98 = 0.0784 / t96 - 0.25;
+        ::overact::guard::reach(t98, "leg3")?;
+        let t99 = ::overact::math::sqrt(t98);
+        let t101 = 0.5 * t90 + t93 * t99;
+        let t102 = t90 - t101;
+        let t103 = t96 * t99;
+        ::overact::guard::leg(t103, 0.07839913810297301, "leg3")?;
+        let t104 = 1.0 / t103;
+        let g1_vx_leg3 = t102 * t104;
+        let t109 = 3.5714285714285716 * t103;
+        let minus_g2_vx_leg3 = t101 * t104;
+        let c12_leg3 = 3.5714285714285716 * t102;
+        let t117 = 1.7857142857142858 * (t96 - 0.1568);
+        let t118 = g1_vx_leg3 * t117;
+        let t124 = g1_vx_leg3 * parameters[30] + g1_vx_leg3 * parameters[31]
+            + t109 * (minus_g2_vx_leg3 * parameters[37] + c12_leg3 * parameters[38])
+            + t117 * (parameters[38] * t118 - minus_g2_vx_leg3 * parameters[36]);
+        let t134 = t89 - 0.3950502153918333;
+        let t137 = t134 * t134 + t95;
+        let t139 = 0.0784 / t137 - 0.25;
+        ::overact::guard::reach(t139, "leg4")?;
+        let t140 = ::overact::math::sqrt(t139);
+        let t142 = 0.5 * t134 - t93 * t140;
+        let t143 = t137 * t140;
+        ::overact::guard::leg(t143, 0.07839913810297301, "leg4")?;
+        let t144 = 1.0 / t143;
+        let g2_vx_leg4 = t142 * t144;
+        let t147 = t134 - t142;
+        let minus_g1_vx_leg4 = t147 * t144;
+        let t150 = 1.7857142857142858 * (t137 - 0.1568);
+        let t151 = minus_g1_vx_leg4 * t150;
+        let c12_leg4 = 3.5714285714285716 * t147;
+        let t162 = 3.5714285714285716 * t143;
+        let t171 = t150 * (g2_vx_leg4 * parameters[51] - parameters[53] * t151)
+            - t162 * (c12_leg4 * parameters[53] - g2_vx_leg4 * parameters[52])
             - (minus_g1_vx_leg4 * parameters[46] + minus_g1_vx_leg4 * parameters[45]);
-        let t178 = t90 + g1_vx_leg3 * t127
+        let t174 = t88 + g1_vx_leg3 * t124
             - minus_g2_vx_leg3
-                * (parameters[36] * t121 - minus_g2_vx_leg3 * parameters[35]
+                * (parameters[36] * t118 - minus_g2_vx_leg3 * parameters[35]
                     - c12_leg3 * parameters[37])
             + g2_vx_leg4
-                * (g2_vx_leg4 * parameters[50] - parameters[51] * t154
-                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t175;
-        let t179 = parameters[63] + parameters[67];
-        let t181 = 0.5 * t8;
-        let t183 = t181 - t4 * t14;
-        let t184 = t8 - t183;
-        let g1_vy_leg1 = t184 * t19;
-        let minus_g2_vy_leg1 = t183 * t19;
-        let s12_leg1 = 3.5714285714285716 * t184;
-        let t196 = 1.7857142857142858 * (t31 * g1_vy_leg1);
-        let t202 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+                * (g2_vx_leg4 * parameters[50] - parameters[51] * t151
+                    - c12_leg4 * parameters[52]) - minus_g1_vx_leg4 * t171;
+        let t175 = parameters[63] + parameters[67];
+        let t177 = 0.5 * t8;
+        let t179 = t177 - t4 * t14;
+        let t180 = t8 - t179;
+        let g1_vy_leg1 = t180 * t19;
+        let minus_g2_vy_leg1 = t179 * t19;
+        let s12_leg1 = 3.5714285714285716 * t180;
+        let t191 = t32 * g1_vy_leg1;
+        let t197 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
             + t24 * (minus_g2_vy_leg1 * parameters[7] + s12_leg1 * parameters[8])
-            + t32 * (parameters[8] * t196 - minus_g2_vy_leg1 * parameters[6]);
-        let t208 = parameters[6] * t196 - minus_g2_vy_leg1 * parameters[5]
+            + t32 * (parameters[8] * t191 - minus_g2_vy_leg1 * parameters[6]);
+        let t203 = parameters[6] * t191 - minus_g2_vy_leg1 * parameters[5]
             - s12_leg1 * parameters[7];
-        let t212 = t181 + t49 * t55;
-        let g2_vy_leg2 = t212 * t59;
-        let t215 = t8 - t212;
-        let minus_g1_vy_leg2 = t215 * t59;
-        let t218 = 1.7857142857142858 * (t62 * minus_g1_vy_leg2);
-        let s12_leg2 = 3.5714285714285716 * t215;
-        let t223 = g2_vy_leg2 * parameters[20] - parameters[21] * t218
+        let t207 = t177 + t48 * t54;
+        let g2_vy_leg2 = t207 * t58;
+        let t210 = t8 - t207;
+        let minus_g1_vy_leg2 = t210 * t58;
+        let t212 = t64 * minus_g1_vy_leg2;
+        let s12_leg2 = 3.5714285714285716 * t210;
+        let t217 = g2_vy_leg2 * parameters[20] - parameters[21] * t212
             - s12_leg2 * parameters[22];
-        let t237 = t73 * (g2_vy_leg2 * parameters[21] - parameters[23] * t218)
-            - t78 * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
+        let t231 = t64 * (g2_vy_leg2 * parameters[21] - parameters[23] * t212)
+            - t76 * (s12_leg2 * parameters[23] - g2_vy_leg2 * parameters[22])
             - (minus_g1_vy_leg2 * parameters[16] + minus_g1_vy_leg2 * parameters[15]);
-        let t241 = 0.5 * t95;
-        let t243 = t241 - t92 * t101;
-        let t244 = t95 - t243;
-        let g1_vy_leg3 = t244 * t106;
-        let minus_g2_vy_leg3 = t243 * t106;
-        let s12_leg3 = 3.5714285714285716 * t244;
-        let t256 = 1.7857142857142858 * (t118 * g1_vy_leg3);
-        let t262 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
-            + t111 * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
-            + t119 * (parameters[38] * t256 - minus_g2_vy_leg3 * parameters[36]);
-        let t268 = parameters[36] * t256 - minus_g2_vy_leg3 * parameters[35]
+        let t235 = 0.5 * t93;
+        let t237 = t235 - t90 * t99;
+        let t238 = t93 - t237;
+        let g1_vy_leg3 = t238 * t104;
+        let minus_g2_vy_leg3 = t237 * t104;
+        let s12_leg3 = 3.5714285714285716 * t238;
+        let t249 = t117 * g1_vy_leg3;
+        let t255 = g1_vy_leg3 * parameters[30] + g1_vy_leg3 * parameters[31]
+            + t109 * (minus_g2_vy_leg3 * parameters[37] + s12_leg3 * parameters[38])
+            + t117 * (parameters[38] * t249 - minus_g2_vy_leg3 * parameters[36]);
+        let t261 = parameters[36] * t249 - minus_g2_vy_leg3 * parameters[35]
             - s12_leg3 * parameters[37];
-        let t271 = g1_vx_leg1 * t202 - minus_g2_vx_leg1 * t208 + g2_vx_leg2 * t223
-            - minus_g1_vx_leg2 * t237 + g1_vx_leg3 * t262 - minus_g2_vx_leg3 * t268;
-        let t273 = t241 + t137 * t143;
-        let g2_vy_leg4 = t273 * t147;
-        let t276 = t95 - t273;
-        let minus_g1_vy_leg4 = t276 * t147;
-        let t279 = 1.7857142857142858 * (t150 * minus_g1_vy_leg4);
-        let s12_leg4 = 3.5714285714285716 * t276;
-        let t284 = g2_vy_leg4 * parameters[50] - parameters[51] * t279
+        let t264 = g1_vx_leg1 * t197 - minus_g2_vx_leg1 * t203 + g2_vx_leg2 * t217
+            - minus_g1_vx_leg2 * t231 + g1_vx_leg3 * t255 - minus_g2_vx_leg3 * t261;
+        let t266 = t235 + t134 * t140;
+        let g2_vy_leg4 = t266 * t144;
+        let t269 = t93 - t266;
+        let minus_g1_vy_leg4 = t269 * t144;
+        let t271 = t150 * minus_g1_vy_leg4;
+        let s12_leg4 = 3.5714285714285716 * t269;
+        let t276 = g2_vy_leg4 * parameters[50] - parameters[51] * t271
             - s12_leg4 * parameters[52];
-        let t298 = t161 * (g2_vy_leg4 * parameters[51] - parameters[53] * t279)
-            - t166 * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
+        let t290 = t150 * (g2_vy_leg4 * parameters[51] - parameters[53] * t271)
+            - t162 * (s12_leg4 * parameters[53] - g2_vy_leg4 * parameters[52])
             - (minus_g1_vy_leg4 * parameters[46] + minus_g1_vy_leg4 * parameters[45]);
-        let t301 = t271 + g2_vx_leg4 * t284 - minus_g1_vx_leg4 * t298;
+        let t293 = t264 + g2_vx_leg4 * t276 - minus_g1_vx_leg4 * t290;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t310 = 1.7857142857142858 * (t31 * minus_g1_wz_leg1);
-        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let t318 = 0.11 * minus_c3_leg1;
-        let t326 = t32 * (g2_wz_leg1 * parameters[6] - parameters[8] * t310)
-            - t24 * (g2_wz_leg1 * parameters[7] + parameters[8] * t318)
+        let t301 = t32 * minus_g1_wz_leg1;
+        let t306 = t24 * minus_g1_wz_leg1;
+        let t314 = t32 * (g2_wz_leg1 * parameters[6] - parameters[8] * t301)
+            - t24 * (g2_wz_leg1 * parameters[7] + parameters[8] * t306)
             - (minus_g1_wz_leg1 * parameters[0] + minus_g1_wz_leg1 * parameters[1]);
-        let t332 = g2_wz_leg1 * parameters[5] - parameters[6] * t310
-            + parameters[7] * t318;
+        let t320 = g2_wz_leg1 * parameters[5] - parameters[6] * t301
+            + parameters[7] * t306;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t339 = 1.7857142857142858 * (t62 * g1_wz_leg2);
+        let t326 = t64 * g1_wz_leg2;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let minus_c3_leg2 = c_phi * c12_leg2 + s_phi * s12_leg2;
-        let t349 = 0.11 * minus_c3_leg2;
-        let t351 = parameters[21] * t339 - minus_g2_wz_leg2 * parameters[20]
-            + parameters[22] * t349;
-        let t365 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
-            + t73 * (parameters[23] * t339 - minus_g2_wz_leg2 * parameters[21])
-            - t78 * (minus_g2_wz_leg2 * parameters[22] - parameters[23] * t349);
+        let t333 = t76 * g1_wz_leg2;
+        let t335 = parameters[21] * t326 - minus_g2_wz_leg2 * parameters[20]
+            + parameters[22] * t333;
+        let t349 = g1_wz_leg2 * parameters[16] + g1_wz_leg2 * parameters[15]
+            + t64 * (parameters[23] * t326 - minus_g2_wz_leg2 * parameters[21])
+            - t76 * (minus_g2_wz_leg2 * parameters[22] - parameters[23] * t333);
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
-        let t382 = 0.11 * c3_leg3;
-        let t387 = 1.7857142857142858 * (t118 * g1_wz_leg3);
-        let t393 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
-            + t111 * (minus_g2_wz_leg3 * parameters[37] + parameters[38] * t382)
-            + t119 * (parameters[38] * t387 - minus_g2_wz_leg3 * parameters[36]);
-        let t399 = parameters[36] * t387 - minus_g2_wz_leg3 * parameters[35]
-            - parameters[37] * t382;
-        let t402 = g1_vx_leg1 * t326 - minus_g2_vx_leg1 * t332 + g2_vx_leg2 * t351
-            - minus_g1_vx_leg2 * t365 + g1_vx_leg3 * t393 - minus_g2_vx_leg3 * t399;
+        let t363 = t109 * g1_wz_leg3;
+        let t367 = t117 * g1_wz_leg3;
+        let t373 = g1_wz_leg3 * parameters[30] + g1_wz_leg3 * parameters[31]
+            + t109 * (minus_g2_wz_leg3 * parameters[37] + parameters[38] * t363)
+            + t117 * (parameters[38] * t367 - minus_g2_wz_leg3 * parameters[36]);
+        let t379 = parameters[36] * t367 - minus_g2_wz_leg3 * parameters[35]
+            - parameters[37] * t363;
+        let t382 = g1_vx_leg1 * t314 - minus_g2_vx_leg1 * t320 + g2_vx_leg2 * t335
+            - minus_g1_vx_leg2 * t349 + g1_vx_leg3 * t373 - minus_g2_vx_leg3 * t379;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t411 = 1.7857142857142858 * (t150 * minus_g1_wz_leg4);
-        let c3_leg4 = c_phi * c12_leg4 + s_phi * s12_leg4;
-        let t417 = 0.11 * c3_leg4;
-        let t419 = g2_wz_leg4 * parameters[50] - parameters[51] * t411
-            - parameters[52] * t417;
-        let t433 = t161 * (g2_wz_leg4 * parameters[51] - parameters[53] * t411)
-            - t166 * (parameters[53] * t417 - g2_wz_leg4 * parameters[52])
+        let t390 = t150 * minus_g1_wz_leg4;
+        let t393 = t162 * minus_g1_wz_leg4;
+        let t395 = g2_wz_leg4 * parameters[50] - parameters[51] * t390
+            - parameters[52] * t393;
+        let t409 = t150 * (g2_wz_leg4 * parameters[51] - parameters[53] * t390)
+            - t162 * (parameters[53] * t393 - g2_wz_leg4 * parameters[52])
             - (minus_g1_wz_leg4 * parameters[46] + minus_g1_wz_leg4 * parameters[45]);
-        let t437 = parameters[62] + parameters[66];
-        let t439 = parameters[61] + parameters[65];
-        let t442 = t402 + g2_vx_leg4 * t419 - minus_g1_vx_leg4 * t433
-            - (c_phi * t437 + s_phi * t439);
-        let t453 = g1_vy_leg1 * t202 - minus_g2_vy_leg1 * t208 + g2_vy_leg2 * t223
-            - minus_g1_vy_leg2 * t237 + g1_vy_leg3 * t262 - minus_g2_vy_leg3 * t268;
-        let t469 = g1_vy_leg1 * t326 - minus_g2_vy_leg1 * t332 + g2_vy_leg2 * t351
-            - minus_g1_vy_leg2 * t365 + g1_vy_leg3 * t393 - minus_g2_vy_leg3 * t399;
-        let t477 = t469 + g2_vy_leg4 * t419 - minus_g1_vy_leg4 * t433 + c_phi * t439
-            - s_phi * t437;
-        let t488 = g2_wz_leg1 * t332 - minus_g1_wz_leg1 * t326 + g1_wz_leg2 * t365
-            - minus_g2_wz_leg2 * t351 + g1_wz_leg3 * t393 - minus_g2_wz_leg3 * t399;
+        let t413 = 9.81 * s_phi;
+        let t415 = 9.81 * c_phi;
+        let t423 = t382 + g2_vx_leg4 * t395 - minus_g1_vx_leg4 * t409
+            - 0.1019367991845056
+                * (parameters[61] * t413 + parameters[62] * t415 + parameters[65] * t413
+                    + parameters[66] * t415);
+        let t434 = g1_vy_leg1 * t197 - minus_g2_vy_leg1 * t203 + g2_vy_leg2 * t217
+            - minus_g1_vy_leg2 * t231 + g1_vy_leg3 * t255 - minus_g2_vy_leg3 * t261;
+        let t450 = g1_vy_leg1 * t314 - minus_g2_vy_leg1 * t320 + g2_vy_leg2 * t335
+            - minus_g1_vy_leg2 * t349 + g1_vy_leg3 * t373 - minus_g2_vy_leg3 * t379;
+        let t463 = t450 + g2_vy_leg4 * t395 - minus_g1_vy_leg4 * t409
+            - 0.1019367991845056
+                * (parameters[62] * t413 - parameters[61] * t415 - parameters[65] * t415
+                    + parameters[66] * t413);
+        let t474 = g2_wz_leg1 * t320 - minus_g1_wz_leg1 * t314 + g1_wz_leg2 * t349
+            - minus_g2_wz_leg2 * t335 + g1_wz_leg3 * t373 - minus_g2_wz_leg3 * t379;
         Ok([
-            [t178 + t179, t301, t442],
-            [t301, t453 + g2_vy_leg4 * t284 - minus_g1_vy_leg4 * t298 + t179, t477],
+            [t174 + t175, t293, t423],
+            [t293, t434 + g2_vy_leg4 * t276 - minus_g1_vy_leg4 * t290 + t175, t463],
             [
-                t442, t477,
-                t488 + g2_wz_leg4 * t419 - minus_g1_wz_leg4 * t433 + parameters[60]
+                t423, t463,
+                t474 + g2_wz_leg4 * t395 - minus_g1_wz_leg4 * t409 + parameters[60]
                     + parameters[64],
             ],
         ])
@@ -6675,7 +6619,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 478 operations (205 additions, 265 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 493 intermediates.
+    /// 459 operations (203 additions, 248 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 474 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6712,215 +6656,211 @@ impl DualV {
         let rate_1_leg1 = g1_vx_leg1 * t22 + g1_vy_leg1 * t30;
         let t34 = twist[2] * t21;
         let t36 = twist[2] * t29;
-        let t38 = t27 * t34 - t17 * t36;
         let minus_g2_vx_leg1 = t16 * t19;
         let minus_g2_vy_leg1 = t26 * t19;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t22 + minus_g2_vy_leg1 * t30;
         let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t46 = t38 - 0.0784 * t44;
+        let t46 = t27 * t34 - t17 * t36 - 0.0784 * t44;
         let t47 = rate_1_leg1 * rate_1_leg1;
         let t48 = t11 - 0.1568;
         let t49 = 0.5 * t48;
         let minus_rate_dot_1_leg1 = t19 * (t46 - t47 * t49);
+        let t60 = 3.5714285714285716 * t18;
         let minus_rate_dot_2_leg1 = t19
             * (t16 * t36 - t26 * t34 + 0.0784 * t47 + t44 * t49);
         let t72 = 3.5714285714285716 * t46;
-        let t81 = 3.5714285714285716 * (t18 * t47)
-            - 1.7857142857142858 * (t48 * minus_rate_dot_1_leg1);
-        let t88 = 3.5714285714285716 * t18
+        let t76 = 1.7857142857142858 * t48;
+        let t79 = t47 * t60 - minus_rate_dot_1_leg1 * t76;
+        let t86 = t60
             * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t44
                 - parameters[8] * t72)
-            + 1.7857142857142858 * t48
-                * (parameters[8] * t81
+            + t76
+                * (parameters[8] * t79
                     - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t44));
-        let t90 = rate_1_leg1 + minus_rate_2_leg1;
-        let t94 = parameters[11]
-            - (parameters[9] * t90 + ::overact::math::signed(parameters[10], t90));
-        let t95 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
+        let t88 = rate_1_leg1 + minus_rate_2_leg1;
+        let t92 = parameters[11]
+            - (parameters[9] * t88 + ::overact::math::signed(parameters[10], t88));
+        let t93 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t88 - t94;
-        let t103 = minus_rate_2_leg1 + twist[2];
-        let t107 = parameters[12] * t103 + ::overact::math::signed(parameters[13], t103)
+            - parameters[0] * minus_rate_dot_1_leg1 + t86 - t92;
+        let t101 = minus_rate_2_leg1 + twist[2];
+        let t105 = parameters[12] * t101 + ::overact::math::signed(parameters[13], t101)
             + parameters[14];
-        let t108 = parameters[6] * t81 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t72 + t94 - t107;
-        let t111 = t3 + 0.3950502153918333;
-        let t114 = t111 * t111 + t10;
-        let t116 = 0.0784 / t114 - 0.25;
-        ::overact::guard::reach(t116, "leg2")?;
-        let t117 = ::overact::math::sqrt(t116);
-        let t119 = 0.5 * t111 - t8 * t117;
-        let t120 = t114 * t117;
-        ::overact::guard::leg(t120, 0.07839913810297301, "leg2")?;
-        let t121 = 1.0 / t120;
-        let g2_vx_leg2 = t119 * t121;
-        let t125 = t24 + t111 * t117;
-        let t128 = t111 - t119;
-        let minus_g1_vx_leg2 = t128 * t121;
-        let t131 = t8 - t125;
-        let minus_g1_vy_leg2 = t131 * t121;
+        let t106 = parameters[6] * t79 - parameters[5] * minus_rate_dot_2_leg1
+            + parameters[7] * t72 + t92 - t105;
+        let t109 = t3 + 0.3950502153918333;
+        let t112 = t109 * t109 + t10;
+        let t114 = 0.0784 / t112 - 0.25;
+        ::overact::guard::reach(t114, "leg2")?;
+        let t115 = ::overact::math::sqrt(t114);
+        let t117 = 0.5 * t109 - t8 * t115;
+        let t118 = t112 * t115;
+        ::overact::guard::leg(t118, 0.07839913810297301, "leg2")?;
+        let t119 = 1.0 / t118;
+        let g2_vx_leg2 = t117 * t119;
+        let t123 = t24 + t109 * t115;
+        let t126 = t109 - t117;
+        let minus_g1_vx_leg2 = t126 * t119;
+        let t129 = t8 - t123;
+        let minus_g1_vy_leg2 = t129 * t119;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t22 + minus_g1_vy_leg2 * t30;
-        let t135 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let g2_vy_leg2 = t125 * t121;
+        let t133 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let g2_vy_leg2 = t123 * t119;
         let rate_2_leg2 = g2_vx_leg2 * t22 + g2_vy_leg2 * t30;
-        let t142 = rate_2_leg2 * rate_2_leg2;
-        let t143 = t114 - 0.1568;
-        let t144 = 0.5 * t143;
-        let rate_dot_2_leg2 = t121
-            * (t119 * t36 - t125 * t34 + 0.0784 * t135 + t142 * t144);
-        let t153 = t131 * t34 - t128 * t36 - 0.0784 * t142;
-        let rate_dot_1_leg2 = t121 * (t153 - t135 * t144);
-        let t161 = 1.7857142857142858 * (t143 * rate_dot_1_leg2)
-            - 3.5714285714285716 * (t120 * t135);
-        let t164 = 3.5714285714285716 * t153;
-        let t167 = minus_rate_1_leg2 + rate_2_leg2;
-        let t171 = parameters[24] * t167 + ::overact::math::signed(parameters[25], t167)
+        let t140 = rate_2_leg2 * rate_2_leg2;
+        let t141 = t112 - 0.1568;
+        let t142 = 0.5 * t141;
+        let rate_dot_2_leg2 = t119
+            * (t117 * t36 - t123 * t34 + 0.0784 * t133 + t140 * t142);
+        let t151 = t129 * t34 - t126 * t36 - 0.0784 * t140;
+        let rate_dot_1_leg2 = t119 * (t151 - t133 * t142);
+        let t155 = 1.7857142857142858 * t141;
+        let t157 = 3.5714285714285716 * t118;
+        let t159 = rate_dot_1_leg2 * t155 - t133 * t157;
+        let t162 = 3.5714285714285716 * t151;
+        let t165 = minus_rate_1_leg2 + rate_2_leg2;
+        let t169 = parameters[24] * t165 + ::overact::math::signed(parameters[25], t165)
             + parameters[26];
-        let t173 = twist[2] - rate_2_leg2;
-        let t177 = parameters[27] * t173 + ::overact::math::signed(parameters[28], t173)
+        let t171 = twist[2] - rate_2_leg2;
+        let t175 = parameters[27] * t171 + ::overact::math::signed(parameters[28], t171)
             + parameters[29];
-        let t178 = parameters[20] * rate_dot_2_leg2 + parameters[21] * t161
-            + parameters[22] * t164 + t171 - t177;
-        let t202 = 3.5714285714285716 * t120
-            * (parameters[21] * t142 + parameters[22] * rate_dot_2_leg2
-                + parameters[23] * t164)
-            + 1.7857142857142858 * t143
-                * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t142
-                    + parameters[23] * t161);
-        let t204 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
+        let t176 = parameters[20] * rate_dot_2_leg2 + parameters[21] * t159
+            + parameters[22] * t162 + t169 - t175;
+        let t198 = t157
+            * (parameters[21] * t140 + parameters[22] * rate_dot_2_leg2
+                + parameters[23] * t162)
+            + t155
+                * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t140
+                    + parameters[23] * t159);
+        let t200 = parameters[15] * rate_dot_1_leg2 + parameters[16] * rate_dot_1_leg2
             - parameters[17] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[18], minus_rate_1_leg2) + parameters[19]
-            + t202 - t171;
-        let t208 = pose[0] + t2;
-        let t209 = t208 + 0.3950502153918333;
-        let t212 = pose[1] - t6 + 0.10970563941232059;
-        let t214 = t212 * t212;
-        let t215 = t209 * t209 + t214;
-        let t217 = 0.0784 / t215 - 0.25;
-        ::overact::guard::reach(t217, "leg3")?;
-        let t218 = ::overact::math::sqrt(t217);
-        let t220 = 0.5 * t209 + t212 * t218;
-        let t221 = t209 - t220;
-        let t222 = t215 * t218;
-        ::overact::guard::leg(t222, 0.07839913810297301, "leg3")?;
-        let t223 = 1.0 / t222;
-        let g1_vx_leg3 = t221 * t223;
-        let t225 = twist[0] + t21;
-        let t227 = 0.5 * t212;
-        let t229 = t227 - t209 * t218;
-        let t230 = t212 - t229;
-        let g1_vy_leg3 = t230 * t223;
-        let t232 = twist[1] + t29;
-        let rate_1_leg3 = g1_vx_leg3 * t225 + g1_vy_leg3 * t232;
-        let minus_g2_vx_leg3 = t220 * t223;
-        let minus_g2_vy_leg3 = t229 * t223;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t225 + minus_g2_vy_leg3 * t232;
-        let t244 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t246 = t221 * t36 - t230 * t34 - 0.0784 * t244;
-        let t247 = rate_1_leg3 * rate_1_leg3;
-        let t248 = t215 - 0.1568;
-        let t249 = 0.5 * t248;
-        let minus_rate_dot_1_leg3 = t223 * (t246 - t247 * t249);
-        let minus_rate_dot_2_leg3 = t223
-            * (t229 * t34 - t220 * t36 + 0.0784 * t247 + t244 * t249);
-        let t272 = 3.5714285714285716 * t246;
-        let t281 = 3.5714285714285716 * (t222 * t247)
-            - 1.7857142857142858 * (t248 * minus_rate_dot_1_leg3);
-        let t288 = 3.5714285714285716 * t222
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t244
-                - parameters[38] * t272)
-            + 1.7857142857142858 * t248
-                * (parameters[38] * t281
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t244));
-        let t290 = rate_1_leg3 + minus_rate_2_leg3;
-        let t294 = parameters[41]
-            - (parameters[39] * t290 + ::overact::math::signed(parameters[40], t290));
-        let t295 = parameters[32] * rate_1_leg3 - parameters[31] * minus_rate_dot_1_leg3
+            + t198 - t169;
+        let t204 = pose[0] + t2;
+        let t205 = t204 + 0.3950502153918333;
+        let t208 = pose[1] - t6 + 0.10970563941232059;
+        let t210 = t208 * t208;
+        let t211 = t205 * t205 + t210;
+        let t213 = 0.0784 / t211 - 0.25;
+        ::overact::guard::reach(t213, "leg3")?;
+        let t214 = ::overact::math::sqrt(t213);
+        let t216 = 0.5 * t205 + t208 * t214;
+        let t217 = t205 - t216;
+        let t218 = t211 * t214;
+        ::overact::guard::leg(t218, 0.07839913810297301, "leg3")?;
+        let t219 = 1.0 / t218;
+        let g1_vx_leg3 = t217 * t219;
+        let t221 = twist[0] + t21;
+        let t223 = 0.5 * t208;
+        let t225 = t223 - t205 * t214;
+        let t226 = t208 - t225;
+        let g1_vy_leg3 = t226 * t219;
+        let t228 = twist[1] + t29;
+        let rate_1_leg3 = g1_vx_leg3 * t221 + g1_vy_leg3 * t228;
+        let minus_g2_vx_leg3 = t216 * t219;
+        let minus_g2_vy_leg3 = t225 * t219;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t221 + minus_g2_vy_leg3 * t228;
+        let t240 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t242 = t217 * t36 - t226 * t34 - 0.0784 * t240;
+        let t243 = rate_1_leg3 * rate_1_leg3;
+        let t244 = t211 - 0.1568;
+        let t245 = 0.5 * t244;
+        let minus_rate_dot_1_leg3 = t219 * (t242 - t243 * t245);
+        let t256 = 3.5714285714285716 * t218;
+        let minus_rate_dot_2_leg3 = t219
+            * (t225 * t34 - t216 * t36 + 0.0784 * t243 + t240 * t245);
+        let t268 = 3.5714285714285716 * t242;
+        let t272 = 1.7857142857142858 * t244;
+        let t275 = t243 * t256 - minus_rate_dot_1_leg3 * t272;
+        let t282 = t256
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t240
+                - parameters[38] * t268)
+            + t272
+                * (parameters[38] * t275
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t240));
+        let t284 = rate_1_leg3 + minus_rate_2_leg3;
+        let t288 = parameters[41]
+            - (parameters[39] * t284 + ::overact::math::signed(parameters[40], t284));
+        let t289 = parameters[32] * rate_1_leg3 - parameters[31] * minus_rate_dot_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            - parameters[30] * minus_rate_dot_1_leg3 + t288 - t294;
-        let t303 = minus_rate_2_leg3 + twist[2];
-        let t307 = parameters[42] * t303 + ::overact::math::signed(parameters[43], t303)
+            - parameters[30] * minus_rate_dot_1_leg3 + t282 - t288;
+        let t297 = minus_rate_2_leg3 + twist[2];
+        let t301 = parameters[42] * t297 + ::overact::math::signed(parameters[43], t297)
             + parameters[44];
-        let t308 = parameters[36] * t281 - parameters[35] * minus_rate_dot_2_leg3
-            + parameters[37] * t272 + t294 - t307;
-        let t311 = g1_vx_leg1 * t95 - minus_g2_vx_leg1 * t108 + g2_vx_leg2 * t178
-            - minus_g1_vx_leg2 * t204 + g1_vx_leg3 * t295 - minus_g2_vx_leg3 * t308;
-        let t312 = t208 - 0.3950502153918333;
-        let t315 = t312 * t312 + t214;
-        let t317 = 0.0784 / t315 - 0.25;
-        ::overact::guard::reach(t317, "leg4")?;
-        let t318 = ::overact::math::sqrt(t317);
-        let t320 = 0.5 * t312 - t212 * t318;
-        let t321 = t315 * t318;
-        ::overact::guard::leg(t321, 0.07839913810297301, "leg4")?;
-        let t322 = 1.0 / t321;
-        let g2_vx_leg4 = t320 * t322;
-        let t325 = t227 + t312 * t318;
-        let t329 = t312 - t320;
-        let minus_g1_vx_leg4 = t329 * t322;
-        let t332 = t212 - t325;
-        let minus_g1_vy_leg4 = t332 * t322;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t225 + minus_g1_vy_leg4 * t232;
-        let t336 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let g2_vy_leg4 = t325 * t322;
-        let rate_2_leg4 = g2_vx_leg4 * t225 + g2_vy_leg4 * t232;
-        let t343 = rate_2_leg4 * rate_2_leg4;
-        let t344 = t315 - 0.1568;
-        let t345 = 0.5 * t344;
-        let rate_dot_2_leg4 = t322
-            * (t325 * t34 - t320 * t36 + 0.0784 * t336 + t343 * t345);
-        let t354 = t329 * t36 - t332 * t34 - 0.0784 * t343;
-        let rate_dot_1_leg4 = t322 * (t354 - t336 * t345);
-        let t362 = 1.7857142857142858 * (t344 * rate_dot_1_leg4)
-            - 3.5714285714285716 * (t321 * t336);
-        let t365 = 3.5714285714285716 * t354;
-        let t368 = minus_rate_1_leg4 + rate_2_leg4;
-        let t372 = parameters[54] * t368 + ::overact::math::signed(parameters[55], t368)
+        let t302 = parameters[36] * t275 - parameters[35] * minus_rate_dot_2_leg3
+            + parameters[37] * t268 + t288 - t301;
+        let t305 = g1_vx_leg1 * t93 - minus_g2_vx_leg1 * t106 + g2_vx_leg2 * t176
+            - minus_g1_vx_leg2 * t200 + g1_vx_leg3 * t289 - minus_g2_vx_leg3 * t302;
+        let t306 = t204 - 0.3950502153918333;
+        let t309 = t306 * t306 + t210;
+        let t311 = 0.0784 / t309 - 0.25;
+        ::overact::guard::reach(t311, "leg4")?;
+        let t312 = ::overact::math::sqrt(t311);
+        let t314 = 0.5 * t306 - t208 * t312;
+        let t315 = t309 * t312;
+        ::overact::guard::leg(t315, 0.07839913810297301, "leg4")?;
+        let t316 = 1.0 / t315;
+        let g2_vx_leg4 = t314 * t316;
+        let t319 = t223 + t306 * t312;
+        let t323 = t306 - t314;
+        let minus_g1_vx_leg4 = t323 * t316;
+        let t326 = t208 - t319;
+        let minus_g1_vy_leg4 = t326 * t316;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t221 + minus_g1_vy_leg4 * t228;
+        let t330 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let g2_vy_leg4 = t319 * t316;
+        let rate_2_leg4 = g2_vx_leg4 * t221 + g2_vy_leg4 * t228;
+        let t337 = rate_2_leg4 * rate_2_leg4;
+        let t338 = t309 - 0.1568;
+        let t339 = 0.5 * t338;
+        let rate_dot_2_leg4 = t316
+            * (t319 * t34 - t314 * t36 + 0.0784 * t330 + t337 * t339);
+        let t348 = t323 * t36 - t326 * t34 - 0.0784 * t337;
+        let rate_dot_1_leg4 = t316 * (t348 - t330 * t339);
+        let t352 = 1.7857142857142858 * t338;
+        let t354 = 3.5714285714285716 * t315;
+        let t356 = rate_dot_1_leg4 * t352 - t330 * t354;
+        let t359 = 3.5714285714285716 * t348;
+        let t362 = minus_rate_1_leg4 + rate_2_leg4;
+        let t366 = parameters[54] * t362 + ::overact::math::signed(parameters[55], t362)
             + parameters[56];
-        let t374 = twist[2] - rate_2_leg4;
-        let t378 = parameters[57] * t374 + ::overact::math::signed(parameters[58], t374)
+        let t368 = twist[2] - rate_2_leg4;
+        let t372 = parameters[57] * t368 + ::overact::math::signed(parameters[58], t368)
             + parameters[59];
-        let t379 = parameters[50] * rate_dot_2_leg4 + parameters[51] * t362
-            + parameters[52] * t365 + t372 - t378;
-        let t403 = 3.5714285714285716 * t321
-            * (parameters[51] * t343 + parameters[52] * rate_dot_2_leg4
-                + parameters[53] * t365)
-            + 1.7857142857142858 * t344
-                * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t343
-                    + parameters[53] * t362);
-        let t405 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
+        let t373 = parameters[50] * rate_dot_2_leg4 + parameters[51] * t356
+            + parameters[52] * t359 + t366 - t372;
+        let t395 = t354
+            * (parameters[51] * t337 + parameters[52] * rate_dot_2_leg4
+                + parameters[53] * t359)
+            + t352
+                * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t337
+                    + parameters[53] * t356);
+        let t397 = parameters[45] * rate_dot_1_leg4 + parameters[46] * rate_dot_1_leg4
             - parameters[47] * minus_rate_1_leg4
             - ::overact::math::signed(parameters[48], minus_rate_1_leg4) + parameters[49]
-            + t403 - t372;
-        let s12_leg1 = 3.5714285714285716 * t27;
-        let c12_leg1 = 3.5714285714285716 * t17;
-        let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
-        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let t423 = 9.090909090909092
-            * (s3_leg1 * (3.5714285714285716 * t38)
-                - minus_c3_leg1 * (t81 - 0.28 * minus_rate_dot_2_leg1));
-        let t426 = parameters[62] * t423 + parameters[66] * t423;
-        let t430 = parameters[61] * t423 + parameters[65] * t423;
-        let t444 = g1_vy_leg1 * t95 - minus_g2_vy_leg1 * t108 + g2_vy_leg2 * t178
-            - minus_g1_vy_leg2 * t204 + g1_vy_leg3 * t295 - minus_g2_vy_leg3 * t308;
+            + t395 - t366;
+        let t401 = 9.090909090909092 * t36;
+        let t403 = 9.090909090909092 * t34;
+        let t410 = t305 + g2_vx_leg4 * t373 - minus_g1_vx_leg4 * t397
+            + parameters[62] * t401 - parameters[61] * t403 - parameters[65] * t403
+            + parameters[66] * t401;
+        let t421 = g1_vy_leg1 * t93 - minus_g2_vy_leg1 * t106 + g2_vy_leg2 * t176
+            - minus_g1_vy_leg2 * t200 + g1_vy_leg3 * t289 - minus_g2_vy_leg3 * t302;
+        let t433 = t421 + g2_vy_leg4 * t373 - minus_g1_vy_leg4 * t397
+            - (parameters[61] * t401 + parameters[62] * t403 + parameters[65] * t401
+                + parameters[66] * t403);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t484 = g2_wz_leg1 * t108 - minus_g1_wz_leg1 * t95 + t107 + g1_wz_leg2 * t204
-            - minus_g2_wz_leg2 * t178 + t177 + g1_wz_leg3 * t295
-            - minus_g2_wz_leg3 * t308 + t307;
+        let t465 = g2_wz_leg1 * t106 - minus_g1_wz_leg1 * t93 + t105 + g1_wz_leg2 * t200
+            - minus_g2_wz_leg2 * t176 + t175 + g1_wz_leg3 * t289
+            - minus_g2_wz_leg3 * t302 + t301;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        Ok([
-            t311 + g2_vx_leg4 * t379 - minus_g1_vx_leg4 * t405 + s_phi * t426
-                - c_phi * t430,
-            t444 + g2_vy_leg4 * t379 - minus_g1_vy_leg4 * t405
-                - (s_phi * t430 + c_phi * t426),
-            t484 + g2_wz_leg4 * t379 - minus_g1_wz_leg4 * t405 + t378,
-        ])
+        Ok([t410, t433, t465 + g2_wz_leg4 * t373 - minus_g1_wz_leg4 * t397 + t372])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -6933,7 +6873,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 648 operations (280 additions, 356 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 663 intermediates.
+    /// 633 operations (276 additions, 345 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 648 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6961,21 +6901,19 @@ impl DualV {
         ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
         let t19 = 1.0 / t18;
         let g1_vx_leg1 = t17 * t19;
-        let t21 = t6 * acceleration[2];
-        let t23 = t2 * twist[2];
-        let t24 = twist[2] * t23;
-        let t25 = acceleration[0] - t21 + t24;
+        let t21 = t2 * twist[2];
+        let t24 = twist[2] * t21 - t6 * acceleration[2];
+        let t25 = acceleration[0] + t24;
         let t27 = 0.5 * t8;
         let t29 = t27 - t4 * t14;
         let t30 = t8 - t29;
-        let t31 = t2 * acceleration[2];
-        let t33 = t6 * twist[2];
-        let t34 = twist[2] * t33;
-        let t35 = acceleration[1] - t31 - t34;
+        let t31 = t6 * twist[2];
+        let t34 = twist[2] * t31 + t2 * acceleration[2];
+        let t35 = acceleration[1] - t34;
         let minus_g2_vx_leg1 = t16 * t19;
-        let t39 = twist[0] - t33;
+        let t39 = twist[0] - t31;
         let minus_g2_vy_leg1 = t29 * t19;
-        let t42 = twist[1] - t23;
+        let t42 = twist[1] - t21;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
         let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
@@ -6985,270 +6923,273 @@ impl DualV {
         let t53 = t11 - 0.1568;
         let t54 = 0.5 * t53;
         let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
+        let t66 = 3.5714285714285716 * t18;
         let minus_rate_dot_2_leg1 = t19
             * (t16 * t25 + t29 * t35 + 0.0784 * t52 + t45 * t54);
         let t78 = 3.5714285714285716 * t47;
-        let t87 = 3.5714285714285716 * (t18 * t52)
-            + 1.7857142857142858 * (t53 * rate_dot_1_leg1);
-        let t94 = 3.5714285714285716 * t18
+        let t82 = 1.7857142857142858 * t53;
+        let t85 = t52 * t66 + rate_dot_1_leg1 * t82;
+        let t92 = t66
             * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t45
                 + parameters[8] * t78)
-            + 1.7857142857142858 * t53
-                * (parameters[8] * t87
+            + t82
+                * (parameters[8] * t85
                     - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t45));
-        let t96 = rate_1_leg1 + minus_rate_2_leg1;
-        let t100 = parameters[11]
-            - (parameters[9] * t96 + ::overact::math::signed(parameters[10], t96));
-        let t101 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t94 = rate_1_leg1 + minus_rate_2_leg1;
+        let t98 = parameters[11]
+            - (parameters[9] * t94 + ::overact::math::signed(parameters[10], t94));
+        let t99 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t94
-            - t100;
-        let t109 = minus_rate_2_leg1 + twist[2];
-        let t113 = parameters[12] * t109 + ::overact::math::signed(parameters[13], t109)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t92
+            - t98;
+        let t107 = minus_rate_2_leg1 + twist[2];
+        let t111 = parameters[12] * t107 + ::overact::math::signed(parameters[13], t107)
             + parameters[14];
-        let t114 = parameters[6] * t87 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t78 + t100 - t113;
-        let t117 = t3 + 0.3950502153918333;
-        let t120 = t117 * t117 + t10;
-        let t122 = 0.0784 / t120 - 0.25;
-        ::overact::guard::reach(t122, "leg2")?;
-        let t123 = ::overact::math::sqrt(t122);
-        let t125 = 0.5 * t117 - t8 * t123;
-        let t126 = t120 * t123;
-        ::overact::guard::leg(t126, 0.07839913810297301, "leg2")?;
-        let t127 = 1.0 / t126;
-        let g2_vx_leg2 = t125 * t127;
-        let t131 = t27 + t117 * t123;
-        let t134 = t117 - t125;
-        let minus_g1_vx_leg2 = t134 * t127;
-        let t137 = t8 - t131;
-        let minus_g1_vy_leg2 = t137 * t127;
+        let t112 = parameters[6] * t85 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t78 + t98 - t111;
+        let t115 = t3 + 0.3950502153918333;
+        let t118 = t115 * t115 + t10;
+        let t120 = 0.0784 / t118 - 0.25;
+        ::overact::guard::reach(t120, "leg2")?;
+        let t121 = ::overact::math::sqrt(t120);
+        let t123 = 0.5 * t115 - t8 * t121;
+        let t124 = t118 * t121;
+        ::overact::guard::leg(t124, 0.07839913810297301, "leg2")?;
+        let t125 = 1.0 / t124;
+        let g2_vx_leg2 = t123 * t125;
+        let t129 = t27 + t115 * t121;
+        let t132 = t115 - t123;
+        let minus_g1_vx_leg2 = t132 * t125;
+        let t135 = t8 - t129;
+        let minus_g1_vy_leg2 = t135 * t125;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t141 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let g2_vy_leg2 = t131 * t127;
+        let t139 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let g2_vy_leg2 = t129 * t125;
         let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t148 = rate_2_leg2 * rate_2_leg2;
-        let t149 = t120 - 0.1568;
-        let t150 = 0.5 * t149;
-        let rate_dot_2_leg2 = t127
-            * (t125 * t25 + t131 * t35 + 0.0784 * t141 + t148 * t150);
-        let t161 = t134 * t25 + t137 * t35 + 0.0784 * t148;
-        let minus_rate_dot_1_leg2 = t127 * (t161 + t141 * t150);
-        let t167 = 3.5714285714285716 * (t126 * t141)
-            + 1.7857142857142858 * (t149 * minus_rate_dot_1_leg2);
-        let t170 = 3.5714285714285716 * t161;
-        let t173 = minus_rate_1_leg2 + rate_2_leg2;
-        let t177 = parameters[24] * t173 + ::overact::math::signed(parameters[25], t173)
+        let t146 = rate_2_leg2 * rate_2_leg2;
+        let t147 = t118 - 0.1568;
+        let t148 = 0.5 * t147;
+        let rate_dot_2_leg2 = t125
+            * (t123 * t25 + t129 * t35 + 0.0784 * t139 + t146 * t148);
+        let t153 = 3.5714285714285716 * t124;
+        let t159 = t132 * t25 + t135 * t35 + 0.0784 * t146;
+        let minus_rate_dot_1_leg2 = t125 * (t159 + t139 * t148);
+        let t163 = 1.7857142857142858 * t147;
+        let t165 = t139 * t153 + minus_rate_dot_1_leg2 * t163;
+        let t168 = 3.5714285714285716 * t159;
+        let t171 = minus_rate_1_leg2 + rate_2_leg2;
+        let t175 = parameters[24] * t171 + ::overact::math::signed(parameters[25], t171)
             + parameters[26];
-        let t179 = twist[2] - rate_2_leg2;
-        let t183 = parameters[27] * t179 + ::overact::math::signed(parameters[28], t179)
+        let t177 = twist[2] - rate_2_leg2;
+        let t181 = parameters[27] * t177 + ::overact::math::signed(parameters[28], t177)
             + parameters[29];
-        let t184 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t167
-            - parameters[22] * t170 + t177 - t183;
-        let t208 = 1.7857142857142858 * t149
-            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t148
-                - parameters[23] * t167)
-            - 3.5714285714285716 * t126
-                * (parameters[23] * t170
-                    - (parameters[21] * t148 + parameters[22] * rate_dot_2_leg2));
-        let t210 = parameters[19]
+        let t182 = parameters[20] * rate_dot_2_leg2 - parameters[21] * t165
+            - parameters[22] * t168 + t175 - t181;
+        let t204 = t163
+            * (parameters[21] * rate_dot_2_leg2 - parameters[22] * t146
+                - parameters[23] * t165)
+            - t153
+                * (parameters[23] * t168
+                    - (parameters[21] * t146 + parameters[22] * rate_dot_2_leg2));
+        let t206 = parameters[19]
             - (parameters[16] * minus_rate_dot_1_leg2
                 + parameters[17] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[18], minus_rate_1_leg2))
-            - parameters[15] * minus_rate_dot_1_leg2 + t208 - t177;
-        let t214 = pose[0] + t2;
-        let t215 = t214 + 0.3950502153918333;
-        let t218 = pose[1] - t6 + 0.10970563941232059;
-        let t220 = t218 * t218;
-        let t221 = t215 * t215 + t220;
-        let t223 = 0.0784 / t221 - 0.25;
-        ::overact::guard::reach(t223, "leg3")?;
-        let t224 = ::overact::math::sqrt(t223);
-        let t226 = 0.5 * t215 + t218 * t224;
-        let t227 = t215 - t226;
-        let t228 = t221 * t224;
-        ::overact::guard::leg(t228, 0.07839913810297301, "leg3")?;
-        let t229 = 1.0 / t228;
-        let g1_vx_leg3 = t227 * t229;
-        let t232 = acceleration[0] + t21 - t24;
-        let t234 = 0.5 * t218;
-        let t236 = t234 - t215 * t224;
-        let t237 = t218 - t236;
-        let t239 = acceleration[1] + t31 + t34;
-        let minus_g2_vx_leg3 = t226 * t229;
-        let t243 = twist[0] + t33;
-        let minus_g2_vy_leg3 = t236 * t229;
-        let t246 = twist[1] + t23;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t243 + minus_g2_vy_leg3 * t246;
-        let t249 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t251 = t227 * t232 + t237 * t239 + 0.0784 * t249;
-        let g1_vy_leg3 = t237 * t229;
-        let rate_1_leg3 = g1_vx_leg3 * t243 + g1_vy_leg3 * t246;
-        let t256 = rate_1_leg3 * rate_1_leg3;
-        let t257 = t221 - 0.1568;
-        let t258 = 0.5 * t257;
-        let rate_dot_1_leg3 = t229 * (t251 + t256 * t258);
-        let minus_rate_dot_2_leg3 = t229
-            * (t226 * t232 + t236 * t239 + 0.0784 * t256 + t249 * t258);
-        let t282 = 3.5714285714285716 * t251;
-        let t291 = 3.5714285714285716 * (t228 * t256)
-            + 1.7857142857142858 * (t257 * rate_dot_1_leg3);
-        let t298 = 3.5714285714285716 * t228
-            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t249
-                + parameters[38] * t282)
-            + 1.7857142857142858 * t257
-                * (parameters[38] * t291
-                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t249));
-        let t300 = rate_1_leg3 + minus_rate_2_leg3;
-        let t304 = parameters[41]
-            - (parameters[39] * t300 + ::overact::math::signed(parameters[40], t300));
-        let t305 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
+            - parameters[15] * minus_rate_dot_1_leg2 + t204 - t175;
+        let t210 = pose[0] + t2;
+        let t211 = t210 + 0.3950502153918333;
+        let t214 = pose[1] - t6 + 0.10970563941232059;
+        let t216 = t214 * t214;
+        let t217 = t211 * t211 + t216;
+        let t219 = 0.0784 / t217 - 0.25;
+        ::overact::guard::reach(t219, "leg3")?;
+        let t220 = ::overact::math::sqrt(t219);
+        let t222 = 0.5 * t211 + t214 * t220;
+        let t223 = t211 - t222;
+        let t224 = t217 * t220;
+        ::overact::guard::leg(t224, 0.07839913810297301, "leg3")?;
+        let t225 = 1.0 / t224;
+        let g1_vx_leg3 = t223 * t225;
+        let t227 = acceleration[0] - t24;
+        let t229 = 0.5 * t214;
+        let t231 = t229 - t211 * t220;
+        let t232 = t214 - t231;
+        let t233 = acceleration[1] + t34;
+        let minus_g2_vx_leg3 = t222 * t225;
+        let t237 = twist[0] + t31;
+        let minus_g2_vy_leg3 = t231 * t225;
+        let t240 = twist[1] + t21;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t240;
+        let t243 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t245 = t223 * t227 + t232 * t233 + 0.0784 * t243;
+        let g1_vy_leg3 = t232 * t225;
+        let rate_1_leg3 = g1_vx_leg3 * t237 + g1_vy_leg3 * t240;
+        let t250 = rate_1_leg3 * rate_1_leg3;
+        let t251 = t217 - 0.1568;
+        let t252 = 0.5 * t251;
+        let rate_dot_1_leg3 = t225 * (t245 + t250 * t252);
+        let t264 = 3.5714285714285716 * t224;
+        let minus_rate_dot_2_leg3 = t225
+            * (t222 * t227 + t231 * t233 + 0.0784 * t250 + t243 * t252);
+        let t276 = 3.5714285714285716 * t245;
+        let t280 = 1.7857142857142858 * t251;
+        let t283 = t250 * t264 + rate_dot_1_leg3 * t280;
+        let t290 = t264
+            * (parameters[37] * minus_rate_dot_2_leg3 - parameters[36] * t243
+                + parameters[38] * t276)
+            + t280
+                * (parameters[38] * t283
+                    - (parameters[36] * minus_rate_dot_2_leg3 + parameters[37] * t243));
+        let t292 = rate_1_leg3 + minus_rate_2_leg3;
+        let t296 = parameters[41]
+            - (parameters[39] * t292 + ::overact::math::signed(parameters[40], t292));
+        let t297 = parameters[30] * rate_dot_1_leg3 + parameters[31] * rate_dot_1_leg3
             + parameters[32] * rate_1_leg3
             + ::overact::math::signed(parameters[33], rate_1_leg3) + parameters[34]
-            + t298 - t304;
-        let t313 = minus_rate_2_leg3 + twist[2];
-        let t317 = parameters[42] * t313 + ::overact::math::signed(parameters[43], t313)
+            + t290 - t296;
+        let t305 = minus_rate_2_leg3 + twist[2];
+        let t309 = parameters[42] * t305 + ::overact::math::signed(parameters[43], t305)
             + parameters[44];
-        let t318 = parameters[36] * t291 - parameters[35] * minus_rate_dot_2_leg3
-            - parameters[37] * t282 + t304 - t317;
-        let t321 = g1_vx_leg1 * t101 - minus_g2_vx_leg1 * t114 + g2_vx_leg2 * t184
-            - minus_g1_vx_leg2 * t210 + g1_vx_leg3 * t305 - minus_g2_vx_leg3 * t318;
-        let t322 = t214 - 0.3950502153918333;
-        let t325 = t322 * t322 + t220;
-        let t327 = 0.0784 / t325 - 0.25;
-        ::overact::guard::reach(t327, "leg4")?;
-        let t328 = ::overact::math::sqrt(t327);
-        let t330 = 0.5 * t322 - t218 * t328;
-        let t331 = t325 * t328;
-        ::overact::guard::leg(t331, 0.07839913810297301, "leg4")?;
-        let t332 = 1.0 / t331;
-        let g2_vx_leg4 = t330 * t332;
-        let t336 = t234 + t322 * t328;
-        let t339 = t322 - t330;
-        let minus_g1_vx_leg4 = t339 * t332;
-        let t342 = t218 - t336;
-        let minus_g1_vy_leg4 = t342 * t332;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t243 + minus_g1_vy_leg4 * t246;
-        let t346 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let g2_vy_leg4 = t336 * t332;
-        let rate_2_leg4 = g2_vx_leg4 * t243 + g2_vy_leg4 * t246;
-        let t353 = rate_2_leg4 * rate_2_leg4;
-        let t354 = t325 - 0.1568;
-        let t355 = 0.5 * t354;
-        let rate_dot_2_leg4 = t332
-            * (t330 * t232 + t336 * t239 + 0.0784 * t346 + t353 * t355);
-        let t366 = t339 * t232 + t342 * t239 + 0.0784 * t353;
-        let minus_rate_dot_1_leg4 = t332 * (t366 + t346 * t355);
-        let t372 = 3.5714285714285716 * (t331 * t346)
-            + 1.7857142857142858 * (t354 * minus_rate_dot_1_leg4);
-        let t375 = 3.5714285714285716 * t366;
-        let t378 = minus_rate_1_leg4 + rate_2_leg4;
-        let t382 = parameters[54] * t378 + ::overact::math::signed(parameters[55], t378)
+        let t310 = parameters[36] * t283 - parameters[35] * minus_rate_dot_2_leg3
+            - parameters[37] * t276 + t296 - t309;
+        let t313 = g1_vx_leg1 * t99 - minus_g2_vx_leg1 * t112 + g2_vx_leg2 * t182
+            - minus_g1_vx_leg2 * t206 + g1_vx_leg3 * t297 - minus_g2_vx_leg3 * t310;
+        let t314 = t210 - 0.3950502153918333;
+        let t317 = t314 * t314 + t216;
+        let t319 = 0.0784 / t317 - 0.25;
+        ::overact::guard::reach(t319, "leg4")?;
+        let t320 = ::overact::math::sqrt(t319);
+        let t322 = 0.5 * t314 - t214 * t320;
+        let t323 = t317 * t320;
+        ::overact::guard::leg(t323, 0.07839913810297301, "leg4")?;
+        let t324 = 1.0 / t323;
+        let g2_vx_leg4 = t322 * t324;
+        let t328 = t229 + t314 * t320;
+        let t331 = t314 - t322;
+        let minus_g1_vx_leg4 = t331 * t324;
+        let t334 = t214 - t328;
+        let minus_g1_vy_leg4 = t334 * t324;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t237 + minus_g1_vy_leg4 * t240;
+        let t338 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let g2_vy_leg4 = t328 * t324;
+        let rate_2_leg4 = g2_vx_leg4 * t237 + g2_vy_leg4 * t240;
+        let t345 = rate_2_leg4 * rate_2_leg4;
+        let t346 = t317 - 0.1568;
+        let t347 = 0.5 * t346;
+        let rate_dot_2_leg4 = t324
+            * (t322 * t227 + t328 * t233 + 0.0784 * t338 + t345 * t347);
+        let t352 = 3.5714285714285716 * t323;
+        let t358 = t331 * t227 + t334 * t233 + 0.0784 * t345;
+        let minus_rate_dot_1_leg4 = t324 * (t358 + t338 * t347);
+        let t362 = 1.7857142857142858 * t346;
+        let t364 = t338 * t352 + minus_rate_dot_1_leg4 * t362;
+        let t367 = 3.5714285714285716 * t358;
+        let t370 = minus_rate_1_leg4 + rate_2_leg4;
+        let t374 = parameters[54] * t370 + ::overact::math::signed(parameters[55], t370)
             + parameters[56];
-        let t384 = twist[2] - rate_2_leg4;
-        let t388 = parameters[57] * t384 + ::overact::math::signed(parameters[58], t384)
+        let t376 = twist[2] - rate_2_leg4;
+        let t380 = parameters[57] * t376 + ::overact::math::signed(parameters[58], t376)
             + parameters[59];
-        let t389 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t372
-            - parameters[52] * t375 + t382 - t388;
-        let t413 = 1.7857142857142858 * t354
-            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t353
-                - parameters[53] * t372)
-            - 3.5714285714285716 * t331
-                * (parameters[53] * t375
-                    - (parameters[51] * t353 + parameters[52] * rate_dot_2_leg4));
-        let t415 = parameters[49]
+        let t381 = parameters[50] * rate_dot_2_leg4 - parameters[51] * t364
+            - parameters[52] * t367 + t374 - t380;
+        let t403 = t362
+            * (parameters[51] * rate_dot_2_leg4 - parameters[52] * t345
+                - parameters[53] * t364)
+            - t352
+                * (parameters[53] * t367
+                    - (parameters[51] * t345 + parameters[52] * rate_dot_2_leg4));
+        let t405 = parameters[49]
             - (parameters[46] * minus_rate_dot_1_leg4
                 + parameters[47] * minus_rate_1_leg4
                 + ::overact::math::signed(parameters[48], minus_rate_1_leg4))
-            - parameters[45] * minus_rate_dot_1_leg4 + t413 - t382;
-        let t421 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t423 = twist[2] * twist[2];
-        let t433 = parameters[63] * t421
-            - (parameters[61] * t423 + acceleration[2] * parameters[62])
-            - parameters[65] * t423 - acceleration[2] * parameters[66]
-            + parameters[67] * t421;
-        let t440 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t448 = acceleration[2] * parameters[61] - parameters[62] * t423
-            + parameters[63] * t440 + acceleration[2] * parameters[65]
-            - parameters[66] * t423 + parameters[67] * t440;
-        let t451 = t321 + g2_vx_leg4 * t389 - minus_g1_vx_leg4 * t415 + c_phi * t433
-            - s_phi * t448;
-        let t458 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            - parameters[45] * minus_rate_dot_1_leg4 + t403 - t374;
+        let t409 = 9.090909090909092 * t24;
+        let t411 = 9.090909090909092 * t34;
+        let t421 = parameters[62] * t409 - parameters[61] * t411
+            + acceleration[0] * parameters[63] - parameters[65] * t411
+            + parameters[66] * t409 + acceleration[0] * parameters[67];
+        let t422 = t313 + g2_vx_leg4 * t381 - minus_g1_vx_leg4 * t405 + t421;
+        let t429 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t458, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t458, 25.429161076750646, "actuators")?;
-        let t459 = 1.0 / t458;
-        let t467 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t429, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t429, 25.429161076750646, "actuators")?;
+        let t430 = 1.0 / t429;
+        let t438 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t468 = t467 * t459;
-        let t477 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t439 = t438 * t430;
+        let t448 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t467 * t468;
-        ::overact::guard::platform(t477, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t477, 25.592368899353342, "actuators")?;
-        let t478 = 1.0 / t477;
-        let t489 = g1_vy_leg1 * t101 - minus_g2_vy_leg1 * t114 + g2_vy_leg2 * t184
-            - minus_g1_vy_leg2 * t210 + g1_vy_leg3 * t305 - minus_g2_vy_leg3 * t318;
-        let t499 = t489 + g2_vy_leg4 * t389 - minus_g1_vy_leg4 * t415 + s_phi * t433
-            + c_phi * t448 - t451 * t468;
+            - t438 * t439;
+        ::overact::guard::platform(t448, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t448, 25.592368899353342, "actuators")?;
+        let t449 = 1.0 / t448;
+        let t460 = g1_vy_leg1 * t99 - minus_g2_vy_leg1 * t112 + g2_vy_leg2 * t182
+            - minus_g1_vy_leg2 * t206 + g1_vy_leg3 * t297 - minus_g2_vy_leg3 * t310;
+        let t475 = acceleration[1] * parameters[63]
+            - (parameters[61] * t409 + parameters[62] * t411) - parameters[65] * t409
+            - parameters[66] * t411 + acceleration[1] * parameters[67];
+        let t478 = t460 + g2_vy_leg4 * t381 - minus_g1_vy_leg4 * t405 + t475
+            - t422 * t439;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t526 = g1_vx_leg3 * g1_wz_leg3
+        let t505 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t527 = t526 * t459;
-        let t529 = g1_vy_leg3 * g1_wz_leg3
+        let t506 = t505 * t430;
+        let t508 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t467 * t527;
-        let t530 = t529 * t478;
-        let t541 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t526 * t527
-            - t529 * t530;
-        ::overact::guard::platform(t541, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t541, 0.3076928490286828, "actuators")?;
-        let t542 = 1.0 / t541;
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t438 * t506;
+        let t509 = t508 * t449;
+        let t520 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t505 * t506
+            - t508 * t509;
+        ::overact::guard::platform(t520, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t520, 0.3076928490286828, "actuators")?;
+        let t521 = 1.0 / t520;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t565 = g2_wz_leg1 * t114 - minus_g1_wz_leg1 * t101 + t113 + g1_wz_leg2 * t210
-            - minus_g2_wz_leg2 * t184 + t183 + g1_wz_leg3 * t305
-            - minus_g2_wz_leg3 * t318 + t317;
+        let t544 = g2_wz_leg1 * t112 - minus_g1_wz_leg1 * t99 + t111 + g1_wz_leg2 * t206
+            - minus_g2_wz_leg2 * t182 + t181 + g1_wz_leg3 * t297
+            - minus_g2_wz_leg3 * t310 + t309;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t584 = acceleration[2] * parameters[60] + parameters[61] * t440
-            - parameters[62] * t421 + acceleration[2] * parameters[64]
-            + parameters[65] * t440 - parameters[66] * t421;
-        let t589 = t565 + g2_wz_leg4 * t389 - minus_g1_wz_leg4 * t415 + t388 + t584
-            - t451 * t527 - t530 * t499;
-        let t590 = t542 * t589;
-        let t592 = t478 * t499 - t530 * t590;
-        let t596 = t451 * t459 - t468 * t592 - t527 * t590;
-        let t603 = minus_g1_vx_leg4 * t468 - minus_g1_vy_leg4;
-        let t609 = t542 * (minus_g1_vx_leg4 * t527 - minus_g1_wz_leg4 - t530 * t603);
-        let t611 = t478 * t603 - t530 * t609;
-        let t617 = minus_g1_vx_leg4 * t459 + t468 * t611 + t527 * t609;
-        let t627 = 1.0
-            - (minus_g1_vx_leg4 * t617 - minus_g1_vy_leg4 * t611
-                - minus_g1_wz_leg4 * t609);
-        let t629 = 1.0 / ::overact::math::sqrt(t627);
-        let t632 = g1_vx_leg1 * t596 + g1_vy_leg1 * t592 - minus_g1_wz_leg1 * t590
+        let t556 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t561 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t569 = acceleration[2] * parameters[60] + parameters[61] * t556
+            - parameters[62] * t561 + acceleration[2] * parameters[64]
+            + parameters[65] * t556 - parameters[66] * t561;
+        let t574 = t544 + g2_wz_leg4 * t381 - minus_g1_wz_leg4 * t405 + t380 + t569
+            - t422 * t506 - t509 * t478;
+        let t575 = t521 * t574;
+        let t577 = t449 * t478 - t509 * t575;
+        let t581 = t422 * t430 - t439 * t577 - t506 * t575;
+        let t588 = minus_g1_vx_leg4 * t439 - minus_g1_vy_leg4;
+        let t594 = t521 * (minus_g1_vx_leg4 * t506 - minus_g1_wz_leg4 - t509 * t588);
+        let t596 = t449 * t588 - t509 * t594;
+        let t602 = minus_g1_vx_leg4 * t430 + t439 * t596 + t506 * t594;
+        let t612 = 1.0
+            - (minus_g1_vx_leg4 * t602 - minus_g1_vy_leg4 * t596
+                - minus_g1_wz_leg4 * t594);
+        let t614 = 1.0 / ::overact::math::sqrt(t612);
+        let t617 = g1_vx_leg1 * t581 + g1_vy_leg1 * t577 - minus_g1_wz_leg1 * t575
             - preload[0]
-                * ((g1_vy_leg1 * t611 - g1_vx_leg1 * t617 - minus_g1_wz_leg1 * t609)
-                    * t629);
-        let t645 = g1_wz_leg2 * t590
-            - (minus_g1_vx_leg2 * t596 + minus_g1_vy_leg2 * t592)
+                * ((g1_vy_leg1 * t596 - g1_vx_leg1 * t602 - minus_g1_wz_leg1 * t594)
+                    * t614);
+        let t630 = g1_wz_leg2 * t575
+            - (minus_g1_vx_leg2 * t581 + minus_g1_vy_leg2 * t577)
             - preload[0]
-                * ((minus_g1_vx_leg2 * t617 - minus_g1_vy_leg2 * t611
-                    + g1_wz_leg2 * t609) * t629);
-        let t658 = g1_vx_leg3 * t596 + g1_vy_leg3 * t592 + g1_wz_leg3 * t590
+                * ((minus_g1_vx_leg2 * t602 - minus_g1_vy_leg2 * t596
+                    + g1_wz_leg2 * t594) * t614);
+        let t643 = g1_vx_leg3 * t581 + g1_vy_leg3 * t577 + g1_wz_leg3 * t575
             - preload[0]
-                * ((g1_vy_leg3 * t611 - g1_vx_leg3 * t617 + g1_wz_leg3 * t609) * t629);
+                * ((g1_vy_leg3 * t596 - g1_vx_leg3 * t602 + g1_wz_leg3 * t594) * t614);
         Ok([
-            t632, t645, t658,
-            preload[0] * (t627 * t629)
-                - (minus_g1_vx_leg4 * t596 + minus_g1_vy_leg4 * t592
-                    + minus_g1_wz_leg4 * t590),
+            t617, t630, t643,
+            preload[0] * (t612 * t614)
+                - (minus_g1_vx_leg4 * t581 + minus_g1_vy_leg4 * t577
+                    + minus_g1_wz_leg4 * t575),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -7259,7 +7200,7 @@ impl DualV {
     ///
     /// Output: 4.
     ///
-    /// 199 operations (83 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 201 intermediates.
+    /// 191 operations (75 additions, 105 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 193 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7278,90 +7219,89 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = (t4 - (0.5 * t4 + t8 * t14)) * t19;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t10;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t8 * t28)) * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t41 = pose[1] - t6 + 0.10970563941232059;
-        let t43 = t41 * t41;
-        let t44 = t38 * t38 + t43;
-        let t46 = 0.0784 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg3")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t51 = t44 * t47;
-        ::overact::guard::leg(t51, 0.07839913810297301, "leg3")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_leg3 = (t38 - (0.5 * t38 + t41 * t47)) * t52;
-        let t56 = t37 - 0.3950502153918333;
-        let t59 = t56 * t56 + t43;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg4")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg4")?;
-        let t67 = 1.0 / t66;
-        let minus_g1_vx_leg4 = (t56 - (0.5 * t56 - t41 * t62)) * t67;
-        let t70 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
+        let t18 = 1.0 / t17;
+        let g1_vx_leg1 = (0.5 * t4 - t8 * t14) * t18;
+        let t21 = t3 + 0.3950502153918333;
+        let t24 = t21 * t21 + t10;
+        let t26 = 0.0784 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t30 = t24 * t27;
+        ::overact::guard::leg(t30, 0.07839913810297301, "leg2")?;
+        let t31 = 1.0 / t30;
+        let minus_g1_vx_leg2 = (0.5 * t21 + t8 * t27) * t31;
+        let t35 = pose[0] + t2;
+        let t36 = t35 + 0.3950502153918333;
+        let t39 = pose[1] - t6 + 0.10970563941232059;
+        let t41 = t39 * t39;
+        let t42 = t36 * t36 + t41;
+        let t44 = 0.0784 / t42 - 0.25;
+        ::overact::guard::reach(t44, "leg3")?;
+        let t45 = ::overact::math::sqrt(t44);
+        let t48 = t42 * t45;
+        ::overact::guard::leg(t48, 0.07839913810297301, "leg3")?;
+        let t49 = 1.0 / t48;
+        let g1_vx_leg3 = (0.5 * t36 - t39 * t45) * t49;
+        let t53 = t35 - 0.3950502153918333;
+        let t56 = t53 * t53 + t41;
+        let t58 = 0.0784 / t56 - 0.25;
+        ::overact::guard::reach(t58, "leg4")?;
+        let t59 = ::overact::math::sqrt(t58);
+        let t62 = t56 * t59;
+        ::overact::guard::leg(t62, 0.07839913810297301, "leg4")?;
+        let t63 = 1.0 / t62;
+        let minus_g1_vx_leg4 = (0.5 * t53 + t39 * t59) * t63;
+        let t66 = g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
             + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3];
-        let t77 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t73 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t77, 25.429161076750646, "actuators")?;
-        let t78 = 1.0 / t77;
-        let t80 = 0.5 * t8;
-        let g1_vy_leg1 = (t8 - (t80 - t4 * t14)) * t19;
-        let minus_g1_vy_leg2 = (t8 - (t80 + t22 * t28)) * t33;
-        let t92 = 0.5 * t41;
-        let g1_vy_leg3 = (t41 - (t92 - t38 * t47)) * t52;
-        let minus_g1_vy_leg4 = (t41 - (t92 + t56 * t62)) * t67;
-        let t104 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t73, 25.429161076750646, "actuators")?;
+        let t74 = 1.0 / t73;
+        let t76 = 0.5 * t8;
+        let g1_vy_leg1 = (t76 + t4 * t14) * t18;
+        let minus_g1_vy_leg2 = (t76 - t21 * t27) * t31;
+        let t86 = 0.5 * t39;
+        let g1_vy_leg3 = (t86 + t36 * t45) * t49;
+        let minus_g1_vy_leg4 = (t86 - t53 * t59) * t63;
+        let t96 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t105 = t104 * t78;
-        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t104 * t105;
-        ::overact::guard::platform(t114, 25.592368899353342, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t124 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t70 * t105;
+        let t97 = t96 * t74;
+        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t96 * t97;
+        ::overact::guard::platform(t106, 25.592368899353342, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t116 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            + g1_vy_leg3 * torques[2] - minus_g1_vy_leg4 * torques[3] - t66 * t97;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t151 = g1_vx_leg3 * g1_wz_leg3
+        let t143 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t152 = t151 * t78;
-        let t154 = g1_vy_leg3 * g1_wz_leg3
+        let t144 = t143 * t74;
+        let t146 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t104 * t152;
-        let t155 = t154 * t115;
-        let t166 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t151 * t152
-            - t154 * t155;
-        ::overact::guard::platform(t166, 0.3076928490286828, "actuators")?;
-        let t177 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
-            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t70 * t152
-            - t155 * t124;
-        let t178 = t177 / t166;
-        let t180 = t115 * t124 - t155 * t178;
-        let t184 = t70 * t78 - t105 * t180 - t152 * t178;
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t96 * t144;
+        let t147 = t146 * t107;
+        let t158 = g1_wz_leg2 * torques[1] - minus_g1_wz_leg1 * torques[0]
+            + g1_wz_leg3 * torques[2] - minus_g1_wz_leg4 * torques[3] - t66 * t144
+            - t147 * t116;
+        let t169 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t143 * t144
+            - t146 * t147;
+        ::overact::guard::platform(t169, 0.3076928490286828, "actuators")?;
+        let t170 = t158 / t169;
+        let t172 = t107 * t116 - t147 * t170;
+        let t176 = t66 * t74 - t97 * t172 - t144 * t170;
         Ok([
-            g1_vx_leg1 * t184 + g1_vy_leg1 * t180 - minus_g1_wz_leg1 * t178,
-            g1_wz_leg2 * t178 - (minus_g1_vx_leg2 * t184 + minus_g1_vy_leg2 * t180),
-            g1_vx_leg3 * t184 + g1_vy_leg3 * t180 + g1_wz_leg3 * t178,
-            -(minus_g1_vx_leg4 * t184 + minus_g1_vy_leg4 * t180
-                + minus_g1_wz_leg4 * t178),
+            g1_vx_leg1 * t176 + g1_vy_leg1 * t172 - minus_g1_wz_leg1 * t170,
+            g1_wz_leg2 * t170 - (minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t172),
+            g1_vx_leg3 * t176 + g1_vy_leg3 * t172 + g1_wz_leg3 * t170,
+            -(minus_g1_vx_leg4 * t176 + minus_g1_vy_leg4 * t172
+                + minus_g1_wz_leg4 * t170),
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -7371,7 +7311,7 @@ impl DualV {
     ///
     /// Output: 4 x 1.
     ///
-    /// 184 operations (75 additions, 97 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 187 intermediates.
+    /// 176 operations (67 additions, 97 multiplications, 12 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 179 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7388,91 +7328,91 @@ impl DualV {
         let t13 = 0.0784 / t11 - 0.25;
         ::overact::guard::reach(t13, "leg1")?;
         let t14 = ::overact::math::sqrt(t13);
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vy_leg1 = (t4 - (t5 - t8 * t14)) * t19;
-        let t22 = t7 + 0.3950502153918333;
-        let t24 = t22 * t22 + t10;
-        let t26 = 0.0784 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t31 = t24 * t27;
-        ::overact::guard::leg(t31, 0.07839913810297301, "leg2")?;
-        let t32 = 1.0 / t31;
-        let minus_g1_vy_leg2 = (t4 - (t5 + t22 * t27)) * t32;
-        let t37 = pose[1] - t2 + 0.10970563941232059;
-        let t38 = 0.5 * t37;
-        let t39 = pose[0] + t6;
-        let t40 = t39 + 0.3950502153918333;
-        let t42 = t37 * t37;
-        let t43 = t40 * t40 + t42;
-        let t45 = 0.0784 / t43 - 0.25;
-        ::overact::guard::reach(t45, "leg3")?;
-        let t46 = ::overact::math::sqrt(t45);
-        let t50 = t43 * t46;
-        ::overact::guard::leg(t50, 0.07839913810297301, "leg3")?;
-        let t51 = 1.0 / t50;
-        let g1_vy_leg3 = (t37 - (t38 - t40 * t46)) * t51;
-        let t55 = t39 - 0.3950502153918333;
-        let t57 = t55 * t55 + t42;
-        let t59 = 0.0784 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg4")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t64 = t57 * t60;
-        ::overact::guard::leg(t64, 0.07839913810297301, "leg4")?;
-        let t65 = 1.0 / t64;
-        let minus_g1_vy_leg4 = (t37 - (t38 + t55 * t60)) * t65;
-        let g1_vx_leg1 = (t8 - (0.5 * t8 + t4 * t14)) * t19;
-        let minus_g1_vx_leg2 = (t22 - (0.5 * t22 - t4 * t27)) * t32;
-        let g1_vx_leg3 = (t40 - (0.5 * t40 + t37 * t46)) * t51;
-        let minus_g1_vx_leg4 = (t55 - (0.5 * t55 - t37 * t60)) * t65;
-        let t95 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        let t17 = t11 * t14;
+        ::overact::guard::leg(t17, 0.07839913810297301, "leg1")?;
+        let t18 = 1.0 / t17;
+        let g1_vy_leg1 = (t5 + t8 * t14) * t18;
+        let t21 = t7 + 0.3950502153918333;
+        let t23 = t21 * t21 + t10;
+        let t25 = 0.0784 / t23 - 0.25;
+        ::overact::guard::reach(t25, "leg2")?;
+        let t26 = ::overact::math::sqrt(t25);
+        let t29 = t23 * t26;
+        ::overact::guard::leg(t29, 0.07839913810297301, "leg2")?;
+        let t30 = 1.0 / t29;
+        let minus_g1_vy_leg2 = (t5 - t21 * t26) * t30;
+        let t35 = pose[1] - t2 + 0.10970563941232059;
+        let t36 = 0.5 * t35;
+        let t37 = pose[0] + t6;
+        let t38 = t37 + 0.3950502153918333;
+        let t40 = t35 * t35;
+        let t41 = t38 * t38 + t40;
+        let t43 = 0.0784 / t41 - 0.25;
+        ::overact::guard::reach(t43, "leg3")?;
+        let t44 = ::overact::math::sqrt(t43);
+        let t47 = t41 * t44;
+        ::overact::guard::leg(t47, 0.07839913810297301, "leg3")?;
+        let t48 = 1.0 / t47;
+        let g1_vy_leg3 = (t36 + t38 * t44) * t48;
+        let t52 = t37 - 0.3950502153918333;
+        let t54 = t52 * t52 + t40;
+        let t56 = 0.0784 / t54 - 0.25;
+        ::overact::guard::reach(t56, "leg4")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t60 = t54 * t57;
+        ::overact::guard::leg(t60, 0.07839913810297301, "leg4")?;
+        let t61 = 1.0 / t60;
+        let minus_g1_vy_leg4 = (t36 - t52 * t57) * t61;
+        let g1_vx_leg1 = (0.5 * t8 - t4 * t14) * t18;
+        let minus_g1_vx_leg2 = (0.5 * t21 + t4 * t26) * t30;
+        let g1_vx_leg3 = (0.5 * t38 - t35 * t44) * t48;
+        let minus_g1_vx_leg4 = (0.5 * t52 + t35 * t57) * t61;
+        let t87 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t102 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t94 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t102, 25.429161076750646, "actuators")?;
-        let t103 = 1.0 / t102;
-        let t104 = t95 * t103;
-        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t95 * t104;
-        ::overact::guard::platform(t106, 25.592368899353342, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t109 = minus_g1_vx_leg4 * t104 - minus_g1_vy_leg4;
+        ::overact::guard::platform(t94, 25.429161076750646, "actuators")?;
+        let t95 = 1.0 / t94;
+        let t96 = t87 * t95;
+        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4 - t87 * t96;
+        ::overact::guard::platform(t98, 25.592368899353342, "actuators")?;
+        let t99 = 1.0 / t98;
+        let t101 = minus_g1_vx_leg4 * t96 - minus_g1_vy_leg4;
         let g1_wz_leg3 = t6 * g1_vy_leg3 + t2 * g1_vx_leg3;
         let minus_g1_wz_leg1 = t6 * g1_vy_leg1 + t2 * g1_vx_leg1;
         let g1_wz_leg2 = t6 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
         let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t136 = g1_vx_leg3 * g1_wz_leg3
+        let t128 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t137 = t136 * t103;
-        let t139 = g1_vy_leg3 * g1_wz_leg3
+        let t129 = t128 * t95;
+        let t131 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t95 * t137;
-        let t140 = t139 * t107;
-        let t151 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t136 * t137
-            - t139 * t140;
-        ::overact::guard::platform(t151, 0.3076928490286828, "actuators")?;
-        let t156 = (minus_g1_vx_leg4 * t137 - minus_g1_wz_leg4 - t140 * t109) / t151;
-        let t158 = t107 * t109 - t140 * t156;
-        let t164 = minus_g1_vx_leg4 * t103 + t104 * t158 + t137 * t156;
-        let t174 = 1.0
-            - (minus_g1_vx_leg4 * t164 - minus_g1_vy_leg4 * t158
-                - minus_g1_wz_leg4 * t156);
-        let t176 = 1.0 / ::overact::math::sqrt(t174);
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t87 * t129;
+        let t132 = t131 * t99;
+        let t147 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t128 * t129
+            - t131 * t132;
+        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
+        let t148 = (minus_g1_vx_leg4 * t129 - minus_g1_wz_leg4 - t132 * t101) / t147;
+        let t150 = t99 * t101 - t132 * t148;
+        let t156 = minus_g1_vx_leg4 * t95 + t96 * t150 + t129 * t148;
+        let t166 = 1.0
+            - (minus_g1_vx_leg4 * t156 - minus_g1_vy_leg4 * t150
+                - minus_g1_wz_leg4 * t148);
+        let t168 = 1.0 / ::overact::math::sqrt(t166);
         Ok([
             [
-                -((g1_vy_leg1 * t158 - g1_vx_leg1 * t164 - minus_g1_wz_leg1 * t156)
-                    * t176),
+                -((g1_vy_leg1 * t150 - g1_vx_leg1 * t156 - minus_g1_wz_leg1 * t148)
+                    * t168),
             ],
             [
-                -((minus_g1_vx_leg2 * t164 - minus_g1_vy_leg2 * t158 + g1_wz_leg2 * t156)
-                    * t176),
+                -((minus_g1_vx_leg2 * t156 - minus_g1_vy_leg2 * t150 + g1_wz_leg2 * t148)
+                    * t168),
             ],
-            [-((g1_vy_leg3 * t158 - g1_vx_leg3 * t164 + g1_wz_leg3 * t156) * t176)],
-            [t174 * t176],
+            [-((g1_vy_leg3 * t150 - g1_vx_leg3 * t156 + g1_wz_leg3 * t148) * t168)],
+            [t166 * t168],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.

@@ -129,7 +129,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 23 operations (10 additions, 12 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 26 intermediates.
+    /// 22 operations (10 additions, 11 multiplications, 1 divisions), 1 square roots, 2 trigonometric pairs, 0 signs, 25 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -142,11 +142,12 @@ impl FiveBar {
         let t3 = 0.2 * c1_left - 0.1;
         let t8 = 0.1 + 0.2 * c1_right - t3;
         let t11 = s1_right - s1_left;
-        let t16 = t8 * t8 + 0.04 * (t11 * t11);
-        let t19 = (0.0625 - 0.25 * t16) / t16;
-        ::overact::guard::reach(t19, "left")?;
-        let t20 = ::overact::math::sqrt(t19);
-        Ok([t3 + 0.5 * t8 - 0.2 * t11 * t20, 0.2 * s1_left + 0.1 * t11 + t8 * t20])
+        let t12 = 0.2 * t11;
+        let t15 = t8 * t8 + t12 * t12;
+        let t18 = (0.0625 - 0.25 * t15) / t15;
+        ::overact::guard::reach(t18, "left")?;
+        let t19 = ::overact::math::sqrt(t18);
+        Ok([t3 + 0.5 * t8 - t12 * t19, 0.2 * s1_left + 0.1 * t11 + t8 * t19])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -636,11 +637,11 @@ impl FiveBar {
         let g1_vy_right = (pose[1] - (pose[1] * t6 - t0 * t11)) * t16;
         let t55 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let t56 = t55 * t41;
-        let t61 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
+        let t66 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
             - t55 * t56;
-        ::overact::guard::platform(t61, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(t66, 14.323546684675748, "actuators")?;
         let t67 = (g1_vy_right * actuator_velocities[1]
-            - minus_g1_vy_left * actuator_velocities[0] - t37 * t56) / t61;
+            - minus_g1_vy_left * actuator_velocities[0] - t37 * t56) / t66;
         Ok([t37 * t41 - t56 * t67, t67])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
@@ -714,10 +715,10 @@ impl FiveBar {
         let t85 = 1.0 / t84;
         let t89 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let t90 = t89 * t85;
-        let t95 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
+        let t100 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
             - t89 * t90;
-        ::overact::guard::platform(t95, 14.323546684675748, "actuators")?;
-        let t101 = (g1_vy_right * t39 - minus_g1_vy_left * t79 - t81 * t90) / t95;
+        ::overact::guard::platform(t100, 14.323546684675748, "actuators")?;
+        let t101 = (g1_vy_right * t39 - minus_g1_vy_left * t79 - t81 * t90) / t100;
         Ok([t81 * t85 - t90 * t101, t101])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -872,7 +873,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 163 operations (45 additions, 116 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 134 intermediates.
+    /// 155 operations (43 additions, 110 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 126 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -898,87 +899,81 @@ impl FiveBar {
         let minus_g2_vy_left = s1_left * t16;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t22 = minus_rate_2_left * minus_rate_2_left;
+        let t23 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
+        let t24 = c12_left * acceleration[0] + s12_left * acceleration[1] + t23;
         let g1_vy_left = s12_left * t11;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t29 = rate_1_left * rate_1_left;
-        let rate_dot_1_left = t11
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + 0.25 * t22
-                + t29 * (0.2 * c2_left));
+        let t30 = 0.2 * (rate_1_left * rate_1_left);
+        let rate_dot_1_left = t11 * (t24 + c2_left * t30);
         let t34 = g1_vx_left * rate_dot_1_left;
         let t35 = g1_vy_left * rate_dot_1_left;
         let t36 = 9.81 * c1_left;
         let t39 = 9.81 * s1_left;
-        let t49 = 0.2 * t29;
-        let t50 = c1_left * acceleration[0] + s1_left * acceleration[1] + t49;
-        let minus_rate_dot_2_left = t16 * (t50 + t22 * (0.25 * c2_left));
-        let t55 = minus_g2_vx_left * minus_rate_dot_2_left;
-        let t56 = minus_g2_vy_left * minus_rate_dot_2_left;
-        let t57 = 4.0 * acceleration[0];
-        let t59 = t36 + 0.2 * rate_dot_1_left;
-        let t60 = 0.2 * t59;
-        let t61 = g1_vx_left * t60;
-        let t67 = acceleration[1] + 9.81;
-        let t68 = 4.0 * t67;
-        let t69 = g1_vy_left * t60;
-        let t75 = 0.8 * t50;
-        let t80 = c2_left * (t39 - t49) + s2_left * t59;
-        let t87 = rate_1_left + minus_rate_2_left;
+        let t49 = c1_left * acceleration[0] + s1_left * acceleration[1] + t30;
+        let minus_rate_dot_2_left = t16 * (t49 + t23 * c2_left);
+        let t53 = minus_g2_vx_left * minus_rate_dot_2_left;
+        let t54 = minus_g2_vy_left * minus_rate_dot_2_left;
+        let t55 = 4.0 * acceleration[0];
+        let t58 = 0.2 * (t36 + 0.2 * rate_dot_1_left);
+        let t59 = g1_vx_left * t58;
+        let t65 = acceleration[1] + 9.81;
+        let t66 = 4.0 * t65;
+        let t67 = g1_vy_left * t58;
+        let t73 = 0.8 * t49;
+        let t76 = t24 + s12_left * 9.81;
+        let t83 = rate_1_left + minus_rate_2_left;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t101 = 1.0 / s2_right;
-        let t102 = 5.0 * t101;
-        let g1_vx_right = c12_right * t102;
-        let t107 = 4.0 * t101;
-        let minus_g2_vx_right = c1_right * t107;
-        let minus_g2_vy_right = s1_right * t107;
+        let t97 = 1.0 / s2_right;
+        let t98 = 5.0 * t97;
+        let g1_vx_right = c12_right * t98;
+        let t103 = 4.0 * t97;
+        let minus_g2_vx_right = c1_right * t103;
+        let minus_g2_vy_right = s1_right * t103;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t113 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = s12_right * t102;
+        let t110 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
+        let t111 = c12_right * acceleration[0] + s12_right * acceleration[1] + t110;
+        let g1_vy_right = s12_right * t98;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t120 = rate_1_right * rate_1_right;
-        let rate_dot_1_right = t102
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + 0.25 * t113
-                + t120 * (0.2 * c2_right));
-        let t125 = g1_vx_right * rate_dot_1_right;
-        let t126 = g1_vy_right * rate_dot_1_right;
-        let t127 = 9.81 * c1_right;
-        let t130 = 9.81 * s1_right;
-        let t140 = 0.2 * t120;
-        let t141 = c1_right * acceleration[0] + s1_right * acceleration[1] + t140;
-        let minus_rate_dot_2_right = t107 * (t141 + t113 * (0.25 * c2_right));
-        let t146 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t147 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t149 = t127 + 0.2 * rate_dot_1_right;
-        let t150 = 0.2 * t149;
-        let t151 = g1_vx_right * t150;
-        let t157 = g1_vy_right * t150;
-        let t163 = 0.8 * t141;
-        let t168 = c2_right * (t130 - t140) + s2_right * t149;
-        let t175 = rate_1_right + minus_rate_2_right;
+        let t117 = 0.2 * (rate_1_right * rate_1_right);
+        let rate_dot_1_right = t98 * (t111 + c2_right * t117);
+        let t121 = g1_vx_right * rate_dot_1_right;
+        let t122 = g1_vy_right * rate_dot_1_right;
+        let t123 = 9.81 * c1_right;
+        let t126 = 9.81 * s1_right;
+        let t136 = c1_right * acceleration[0] + s1_right * acceleration[1] + t117;
+        let minus_rate_dot_2_right = t103 * (t136 + t110 * c2_right);
+        let t140 = minus_g2_vx_right * minus_rate_dot_2_right;
+        let t141 = minus_g2_vy_right * minus_rate_dot_2_right;
+        let t144 = 0.2 * (t123 + 0.2 * rate_dot_1_right);
+        let t145 = g1_vx_right * t144;
+        let t151 = g1_vy_right * t144;
+        let t157 = 0.8 * t136;
+        let t160 = t111 + 9.81 * s12_right;
+        let t167 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 t34, g1_vx_left * t36, -(g1_vx_left * t39), t34, g1_vx_left * rate_1_left,
-                ::overact::math::signed(g1_vx_left, rate_1_left), g1_vx_left, t55,
-                t57 - 0.16 * (25.0 * t61 + 1.5625 * t55), g1_vx_left * t75 + minus_g2_vx_left * t80,
-                t61, ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t87), t125,
-                g1_vx_right * t127, -(g1_vx_right * t130), t125, g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t146,
-                t57 - 0.16 * (25.0 * t151 + 1.5625 * t146),
-                g1_vx_right * t163 + minus_g2_vx_right * t168, t151,
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t175), acceleration[0],
+                ::overact::math::signed(g1_vx_left, rate_1_left), g1_vx_left, t53,
+                t55 - 0.16 * (25.0 * t59 + 1.5625 * t53), g1_vx_left * t73 + minus_g2_vx_left * t76,
+                t59, ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t83), t121,
+                g1_vx_right * t123, -(g1_vx_right * t126), t121, g1_vx_right * rate_1_right,
+                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t140,
+                t55 - 0.16 * (25.0 * t145 + 1.5625 * t140),
+                g1_vx_right * t157 + minus_g2_vx_right * t160, t145,
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t167), acceleration[0],
             ],
             [
                 t35, g1_vy_left * t36, -(g1_vy_left * t39), t35, g1_vy_left * rate_1_left,
-                ::overact::math::signed(g1_vy_left, rate_1_left), g1_vy_left, t56,
-                t68 - 0.16 * (25.0 * t69 + 1.5625 * t56), g1_vy_left * t75 + minus_g2_vy_left * t80,
-                t69, ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t87), t126,
-                g1_vy_right * t127, -(g1_vy_right * t130), t126, g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t147,
-                t68 - 0.16 * (25.0 * t157 + 1.5625 * t147),
-                g1_vy_right * t163 + minus_g2_vy_right * t168, t157,
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t175), t67,
+                ::overact::math::signed(g1_vy_left, rate_1_left), g1_vy_left, t54,
+                t66 - 0.16 * (25.0 * t67 + 1.5625 * t54), g1_vy_left * t73 + minus_g2_vy_left * t76,
+                t67, ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t83), t122,
+                g1_vy_right * t123, -(g1_vy_right * t126), t122, g1_vy_right * rate_1_right,
+                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t141,
+                t66 - 0.16 * (25.0 * t151 + 1.5625 * t141),
+                g1_vy_right * t157 + minus_g2_vy_right * t160, t151,
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t167), t65,
             ],
         ])
     }
@@ -1146,7 +1141,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 182 operations (60 additions, 117 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 160 intermediates.
+    /// 178 operations (58 additions, 115 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 156 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1211,59 +1206,59 @@ impl FiveBar {
         let t81 = t15 * acceleration[0] + t20 * acceleration[1] + 0.04 * t37;
         let rate_dot_2_left = t12 * (t81 + t29 * t39);
         let t85 = t76 * rate_dot_2_left;
-        let t86 = minus_g1_vx_left * t71;
-        let t88 = minus_g1_vy_left * t71;
-        let t90 = g2_vy_left * t86 - g2_vx_left * t88;
-        let t91 = t90 * rate_dot_2_left;
-        let t92 = acceleration[1] + 9.81;
-        let t95 = t72 * t92 - t74 * acceleration[0];
-        let t96 = 4.0 * t95;
-        let t98 = t43 - 0.2 * minus_rate_dot_1_left;
-        let t106 = t86 * t92 - t88 * acceleration[0];
-        let t107 = 4.0 * t106;
+        let t86 = t12 * t71;
+        let t87 = t86 * rate_dot_2_left;
+        let t88 = acceleration[1] + 9.81;
+        let t91 = t72 * t88 - t74 * acceleration[0];
+        let t92 = 4.0 * t91;
+        let t94 = t43 - 0.2 * minus_rate_dot_1_left;
+        let t100 = minus_g1_vx_left * t71;
+        let t102 = minus_g1_vy_left * t71;
+        let t104 = t100 * t88 - t102 * acceleration[0];
+        let t105 = 4.0 * t104;
         let c2_left = 10.0 * t38;
         let minus_s2_left = 20.0 * t11;
-        let t117 = c2_left * (t44 - 0.2 * t37) - minus_s2_left * t98;
-        let t123 = minus_rate_1_left + rate_2_left;
+        let t115 = c2_left * (t44 - 0.2 * t37) - minus_s2_left * t94;
+        let t121 = minus_rate_1_left + rate_2_left;
         let minus_g2_vx_right = t58 * t61;
         let minus_g2_vy_right = t65 * t61;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t134 = minus_rate_2_right * minus_rate_2_right;
+        let t132 = minus_rate_2_right * minus_rate_2_right;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t140 = rate_1_right * rate_1_right;
-        let t141 = t48 - 0.1025;
-        let t142 = 0.5 * t141;
+        let t138 = rate_1_right * rate_1_right;
+        let t139 = t48 - 0.1025;
+        let t140 = 0.5 * t139;
         let rate_dot_1_right = t61
-            * (t59 * acceleration[0] + t66 * acceleration[1] + 0.0625 * t134
-                + t140 * t142);
-        let t146 = 49.05 * t58;
-        let t147 = 49.05 * t65;
-        let t151 = minus_g2_vx_right * t74 - minus_g2_vy_right * t72;
-        let t156 = t58 * acceleration[0] + t65 * acceleration[1] + 0.04 * t140;
-        let minus_rate_dot_2_right = t61 * (t156 + t134 * t142);
-        let t160 = t151 * minus_rate_dot_2_right;
-        let t163 = minus_g2_vx_right * t88 - minus_g2_vy_right * t86;
-        let t164 = t163 * minus_rate_dot_2_right;
-        let t168 = t146 + 0.2 * rate_dot_1_right;
-        let c2_right = 10.0 * t141;
+            * (t59 * acceleration[0] + t66 * acceleration[1] + 0.0625 * t132
+                + t138 * t140);
+        let t144 = 49.05 * t58;
+        let t145 = 49.05 * t65;
+        let t147 = t61 * t71;
+        let t152 = t58 * acceleration[0] + t65 * acceleration[1] + 0.04 * t138;
+        let minus_rate_dot_2_right = t61 * (t152 + t132 * t140);
+        let t156 = t147 * minus_rate_dot_2_right;
+        let t159 = minus_g2_vx_right * t102 - minus_g2_vy_right * t100;
+        let t160 = t159 * minus_rate_dot_2_right;
+        let t164 = t144 + 0.2 * rate_dot_1_right;
+        let c2_right = 10.0 * t139;
         let s2_right = 20.0 * t60;
-        let t180 = c2_right * (t147 - 0.2 * t140) + s2_right * t168;
-        let t186 = rate_1_right + minus_rate_2_right;
+        let t176 = c2_right * (t145 - 0.2 * t138) + s2_right * t164;
+        let t182 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 -minus_rate_dot_1_left, t43, -t44, -minus_rate_dot_1_left, -minus_rate_1_left,
                 -::overact::math::sign(minus_rate_1_left), 1.0, t85,
-                t96 - 0.16 * (5.0 * t98 + 1.5625 * t85), 4.0 * t81 - t76 * t117, 0.2 * t98,
-                ::overact::math::signed(t76 - 1.0, t123), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t160,
-                t96 + 0.25 * t160, -(t151 * t180), 0.0, -::overact::math::signed(t151, t186), t95,
+                t92 - 0.16 * (5.0 * t94 + 1.5625 * t85), 4.0 * t81 - t76 * t115, 0.2 * t94,
+                ::overact::math::signed(t76 - 1.0, t121), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t156,
+                t92 + 0.25 * t156, -(t147 * t176), 0.0, -::overact::math::signed(t147, t182), t91,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t91, t107 - 0.25 * t91, -(t90 * t117), 0.0,
-                ::overact::math::signed(t90, t123), rate_dot_1_right, t146, -t147, rate_dot_1_right,
-                rate_1_right, ::overact::math::sign(rate_1_right), 1.0, -t164,
-                t107 - 0.16 * (5.0 * t168 - 1.5625 * t164), 4.0 * t156 - t163 * t180, 0.2 * t168,
-                -::overact::math::signed(t163 - 1.0, t186), t106,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t87, t105 - 0.25 * t87, -(t86 * t115), 0.0,
+                ::overact::math::signed(t86, t121), rate_dot_1_right, t144, -t145, rate_dot_1_right,
+                rate_1_right, ::overact::math::sign(rate_1_right), 1.0, -t160,
+                t105 - 0.16 * (5.0 * t164 - 1.5625 * t160), 4.0 * t152 - t159 * t176, 0.2 * t164,
+                -::overact::math::signed(t159 - 1.0, t182), t104,
             ],
         ])
     }
@@ -1278,7 +1273,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 155 operations (46 additions, 106 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 139 intermediates.
+    /// 151 operations (46 additions, 102 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 135 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1303,14 +1298,14 @@ impl FiveBar {
         let minus_g2_vy_left = s1_left * t15;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t21 = minus_rate_2_left * minus_rate_2_left;
+        let t22 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
         let g1_vx_left = c12_left * t3;
         let g1_vy_left = s12_left * t3;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t29 = rate_1_left * rate_1_left;
+        let t30 = 0.2 * (rate_1_left * rate_1_left);
         let rate_dot_1_left = t3
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + 0.25 * t21
-                + t29 * (0.2 * c2_left));
+            * (c12_left * acceleration[0] + s12_left * acceleration[1] + t22
+                + c2_left * t30);
         let t34 = 9.81 * c1_left;
         let t35 = 9.81 * s1_left;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
@@ -1326,59 +1321,57 @@ impl FiveBar {
         let t55 = g1_vy_right * t54;
         let t57 = g1_vx_right * t54;
         let t59 = minus_g2_vx_left * t55 - minus_g2_vy_left * t57;
-        let t63 = 0.2 * t29;
-        let t64 = c1_left * acceleration[0] + s1_left * acceleration[1] + t63;
-        let minus_rate_dot_2_left = t15 * (t64 + t21 * (0.25 * c2_left));
-        let t69 = t59 * minus_rate_dot_2_left;
-        let t70 = g1_vx_left * t54;
-        let t72 = g1_vy_left * t54;
-        let t74 = minus_g2_vy_left * t70 - minus_g2_vx_left * t72;
-        let t75 = t74 * minus_rate_dot_2_left;
-        let t76 = acceleration[1] + 9.81;
-        let t79 = t57 * t76 - t55 * acceleration[0];
-        let t80 = 4.0 * t79;
-        let t82 = t34 + 0.2 * rate_dot_1_left;
-        let t90 = t72 * acceleration[0] - t70 * t76;
-        let t91 = 4.0 * t90;
-        let t98 = c2_left * (t35 - t63) + s2_left * t82;
-        let t104 = rate_1_left + minus_rate_2_left;
-        let t110 = 4.0 * t47;
-        let minus_g2_vx_right = c1_right * t110;
-        let minus_g2_vy_right = s1_right * t110;
+        let t63 = c1_left * acceleration[0] + s1_left * acceleration[1] + t30;
+        let minus_rate_dot_2_left = t15 * (t63 + t22 * c2_left);
+        let t67 = t59 * minus_rate_dot_2_left;
+        let t68 = g1_vx_left * t54;
+        let t70 = g1_vy_left * t54;
+        let t72 = minus_g2_vy_left * t68 - minus_g2_vx_left * t70;
+        let t73 = t72 * minus_rate_dot_2_left;
+        let t74 = acceleration[1] + 9.81;
+        let t77 = t57 * t74 - t55 * acceleration[0];
+        let t78 = 4.0 * t77;
+        let t80 = t34 + 0.2 * rate_dot_1_left;
+        let t88 = t70 * acceleration[0] - t68 * t74;
+        let t89 = 4.0 * t88;
+        let t96 = c2_left * (t35 - t30) + s2_left * t80;
+        let t102 = rate_1_left + minus_rate_2_left;
+        let t108 = 4.0 * t47;
+        let minus_g2_vx_right = c1_right * t108;
+        let minus_g2_vy_right = s1_right * t108;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t116 = minus_rate_2_right * minus_rate_2_right;
+        let t115 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t122 = rate_1_right * rate_1_right;
+        let t121 = 0.2 * (rate_1_right * rate_1_right);
         let rate_dot_1_right = t48
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + 0.25 * t116
-                + t122 * (0.2 * c2_right));
-        let t127 = 9.81 * c1_right;
-        let t128 = 9.81 * s1_right;
-        let t132 = minus_g2_vx_right * t55 - minus_g2_vy_right * t57;
-        let t136 = 0.2 * t122;
-        let t137 = c1_right * acceleration[0] + s1_right * acceleration[1] + t136;
-        let minus_rate_dot_2_right = t110 * (t137 + t116 * (0.25 * c2_right));
-        let t142 = t132 * minus_rate_dot_2_right;
-        let t145 = minus_g2_vy_right * t70 - minus_g2_vx_right * t72;
-        let t146 = t145 * minus_rate_dot_2_right;
-        let t150 = t127 + 0.2 * rate_dot_1_right;
-        let t159 = c2_right * (t128 - t136) + s2_right * t150;
-        let t165 = rate_1_right + minus_rate_2_right;
+            * (c12_right * acceleration[0] + s12_right * acceleration[1] + t115
+                + t121 * c2_right);
+        let t125 = 9.81 * c1_right;
+        let t126 = 9.81 * s1_right;
+        let t130 = minus_g2_vx_right * t55 - minus_g2_vy_right * t57;
+        let t134 = c1_right * acceleration[0] + s1_right * acceleration[1] + t121;
+        let minus_rate_dot_2_right = t108 * (t134 + c2_right * t115);
+        let t138 = t130 * minus_rate_dot_2_right;
+        let t141 = minus_g2_vy_right * t68 - minus_g2_vx_right * t70;
+        let t142 = t141 * minus_rate_dot_2_right;
+        let t146 = t125 + 0.2 * rate_dot_1_right;
+        let t155 = c2_right * (t126 - t121) + s2_right * t146;
+        let t161 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 rate_dot_1_left, t34, -t35, rate_dot_1_left, rate_1_left,
-                ::overact::math::sign(rate_1_left), 1.0, -t69,
-                t80 - 0.16 * (5.0 * t82 - 1.5625 * t69), 0.8 * t64 - t59 * t98, 0.2 * t82,
-                -::overact::math::signed(t59 - 1.0, t104), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t142,
-                t80 + 0.25 * t142, -(t132 * t159), 0.0, -::overact::math::signed(t132, t165), t79,
+                ::overact::math::sign(rate_1_left), 1.0, -t67,
+                t78 - 0.16 * (5.0 * t80 - 1.5625 * t67), 0.8 * t63 - t59 * t96, 0.2 * t80,
+                -::overact::math::signed(t59 - 1.0, t102), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t138,
+                t78 + 0.25 * t138, -(t130 * t155), 0.0, -::overact::math::signed(t130, t161), t77,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t75, t91 + 0.25 * t75, -(t74 * t98), 0.0,
-                -::overact::math::signed(t74, t104), rate_dot_1_right, t127, -t128,
-                rate_dot_1_right, rate_1_right, ::overact::math::sign(rate_1_right), 1.0, -t146,
-                t91 - 0.16 * (5.0 * t150 - 1.5625 * t146), 0.8 * t137 - t145 * t159, 0.2 * t150,
-                -::overact::math::signed(t145 - 1.0, t165), t90,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t73, t89 + 0.25 * t73, -(t72 * t96), 0.0,
+                -::overact::math::signed(t72, t102), rate_dot_1_right, t125, -t126,
+                rate_dot_1_right, rate_1_right, ::overact::math::sign(rate_1_right), 1.0, -t142,
+                t89 - 0.16 * (5.0 * t146 - 1.5625 * t142), 0.8 * t134 - t141 * t155, 0.2 * t146,
+                -::overact::math::signed(t141 - 1.0, t161), t88,
             ],
         ])
     }
@@ -1393,7 +1386,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 208 operations (68 additions, 133 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 190 intermediates.
+    /// 204 operations (66 additions, 131 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 186 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1483,48 +1476,48 @@ impl FiveBar {
         let t127 = t13 * t122 + t17 * t120 + 0.04 * t105;
         let rate_dot_2_left = t21 * (t127 + t103 * t107);
         let t131 = t58 * rate_dot_2_left;
-        let t132 = minus_g1_vx_left * t52;
-        let t134 = minus_g1_vy_left * t52;
-        let t136 = g2_vy_left * t132 - g2_vx_left * t134;
-        let t137 = t136 * rate_dot_2_left;
-        let t138 = t120 + 9.81;
-        let t141 = t53 * t138 - t56 * t122;
-        let t142 = 4.0 * t141;
-        let t144 = t14 + 0.2 * actuator_accelerations[0];
-        let t152 = t132 * t138 - t134 * t122;
-        let t153 = 4.0 * t152;
+        let t132 = t21 * t52;
+        let t133 = t132 * rate_dot_2_left;
+        let t134 = t120 + 9.81;
+        let t137 = t53 * t134 - t56 * t122;
+        let t138 = 4.0 * t137;
+        let t140 = t14 + 0.2 * actuator_accelerations[0];
+        let t146 = minus_g1_vx_left * t52;
+        let t148 = minus_g1_vy_left * t52;
+        let t150 = t146 * t134 - t148 * t122;
+        let t151 = 4.0 * t150;
         let c2_left = 10.0 * t106;
         let minus_s2_left = 20.0 * t20;
-        let t163 = c2_left * (t18 - 0.2 * t105) - minus_s2_left * t144;
-        let t169 = rate_2_left - actuator_velocities[0];
-        let t172 = 49.05 * t35;
-        let t173 = 49.05 * t44;
-        let t177 = minus_g2_vx_right * t56 - minus_g2_vy_right * t53;
-        let t182 = t35 * t122 + t44 * t120 + 0.04 * t92;
-        let minus_rate_dot_2_right = t38 * (t182 + t90 * t94);
-        let t186 = t177 * minus_rate_dot_2_right;
-        let t189 = minus_g2_vx_right * t134 - minus_g2_vy_right * t132;
-        let t190 = t189 * minus_rate_dot_2_right;
-        let t194 = t172 + 0.2 * actuator_accelerations[1];
+        let t161 = c2_left * (t18 - 0.2 * t105) - minus_s2_left * t140;
+        let t167 = rate_2_left - actuator_velocities[0];
+        let t170 = 49.05 * t35;
+        let t171 = 49.05 * t44;
+        let t173 = t38 * t52;
+        let t178 = t35 * t122 + t44 * t120 + 0.04 * t92;
+        let minus_rate_dot_2_right = t38 * (t178 + t90 * t94);
+        let t182 = t173 * minus_rate_dot_2_right;
+        let t185 = minus_g2_vx_right * t148 - minus_g2_vy_right * t146;
+        let t186 = t185 * minus_rate_dot_2_right;
+        let t190 = t170 + 0.2 * actuator_accelerations[1];
         let c2_right = 10.0 * t93;
         let s2_right = 20.0 * t37;
-        let t206 = c2_right * (t173 - 0.2 * t92) + s2_right * t194;
-        let t212 = actuator_velocities[1] + minus_rate_2_right;
+        let t202 = c2_right * (t171 - 0.2 * t92) + s2_right * t190;
+        let t208 = actuator_velocities[1] + minus_rate_2_right;
         Ok([
             [
                 actuator_accelerations[0], t14, -t18, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, t131,
-                t142 - 0.16 * (5.0 * t144 + 1.5625 * t131), 4.0 * t127 - t58 * t163, 0.2 * t144,
-                ::overact::math::signed(t58 - 1.0, t169), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t186,
-                t142 + 0.25 * t186, -(t177 * t206), 0.0, -::overact::math::signed(t177, t212), t141,
+                t138 - 0.16 * (5.0 * t140 + 1.5625 * t131), 4.0 * t127 - t58 * t161, 0.2 * t140,
+                ::overact::math::signed(t58 - 1.0, t167), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t182,
+                t138 + 0.25 * t182, -(t173 * t202), 0.0, -::overact::math::signed(t173, t208), t137,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t137, t153 - 0.25 * t137, -(t136 * t163), 0.0,
-                ::overact::math::signed(t136, t169), actuator_accelerations[1], t172, -t173,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t133, t151 - 0.25 * t133, -(t132 * t161), 0.0,
+                ::overact::math::signed(t132, t167), actuator_accelerations[1], t170, -t171,
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t190,
-                t153 - 0.16 * (5.0 * t194 - 1.5625 * t190), 4.0 * t182 - t189 * t206, 0.2 * t194,
-                -::overact::math::signed(t189 - 1.0, t212), t152,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t186,
+                t151 - 0.16 * (5.0 * t190 - 1.5625 * t186), 4.0 * t178 - t185 * t202, 0.2 * t190,
+                -::overact::math::signed(t185 - 1.0, t208), t150,
             ],
         ])
     }
@@ -1662,7 +1655,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 135 operations (37 additions, 96 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 114 intermediates.
+    /// 123 operations (33 additions, 88 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 102 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1688,13 +1681,12 @@ impl FiveBar {
         let minus_g2_vy_left = s1_left * t17;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t23 = minus_rate_2_left * minus_rate_2_left;
+        let t24 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
+        let t25 = c12_left * acceleration[0] + s12_left * acceleration[1] + t24;
         let g1_vy_left = s12_left * t12;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t30 = rate_1_left * rate_1_left;
-        let rate_dot_1_left = t12
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + 0.25 * t23
-                + t30 * (0.2 * c2_left));
+        let t31 = 0.2 * (rate_1_left * rate_1_left);
+        let rate_dot_1_left = t12 * (t25 + c2_left * t31);
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
         let t47 = 1.0 / s2_right;
@@ -1705,29 +1697,26 @@ impl FiveBar {
         let minus_g2_vy_right = s1_right * t53;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t59 = minus_rate_2_right * minus_rate_2_right;
+        let t60 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
+        let t61 = c12_right * acceleration[0] + s12_right * acceleration[1] + t60;
         let g1_vy_right = s12_right * t48;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t66 = rate_1_right * rate_1_right;
-        let rate_dot_1_right = t48
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + 0.25 * t59
-                + t66 * (0.2 * c2_right));
+        let t67 = 0.2 * (rate_1_right * rate_1_right);
+        let rate_dot_1_right = t48 * (t61 + c2_right * t67);
         let t73 = 9.81 * c1_left;
         let t76 = 9.81 * c1_right;
         let t79 = 9.81 * s1_left;
         let t82 = 9.81 * s1_right;
-        let t96 = 0.2 * t30;
-        let t97 = c1_left * acceleration[0] + s1_left * acceleration[1] + t96;
-        let minus_rate_dot_2_left = t17 * (t97 + t23 * (0.25 * c2_left));
-        let t107 = 0.2 * t66;
-        let t108 = c1_right * acceleration[0] + s1_right * acceleration[1] + t107;
-        let minus_rate_dot_2_right = t53 * (t108 + t59 * (0.25 * c2_right));
-        let t115 = 0.8 * t97;
-        let t122 = c2_left * (t79 - t96) + s2_left * (t73 + 0.2 * rate_dot_1_left);
-        let t128 = 0.8 * t108;
-        let t135 = c2_right * (t82 - t107) + s2_right * (t76 + 0.2 * rate_dot_1_right);
-        let t142 = rate_1_left + minus_rate_2_left;
-        let t147 = rate_1_right + minus_rate_2_right;
+        let t96 = c1_left * acceleration[0] + s1_left * acceleration[1] + t31;
+        let minus_rate_dot_2_left = t17 * (t96 + t24 * c2_left);
+        let t105 = c1_right * acceleration[0] + s1_right * acceleration[1] + t67;
+        let minus_rate_dot_2_right = t53 * (t105 + t60 * c2_right);
+        let t111 = 0.8 * t96;
+        let t114 = t25 + s12_left * 9.81;
+        let t120 = 0.8 * t105;
+        let t123 = t61 + s12_right * 9.81;
+        let t130 = rate_1_left + minus_rate_2_left;
+        let t135 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 acceleration[0], g1_vx_left * rate_dot_1_left, g1_vx_right * rate_dot_1_right,
@@ -1737,10 +1726,10 @@ impl FiveBar {
                 ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_left, g1_vx_right,
                 minus_g2_vx_left * minus_rate_dot_2_left,
                 minus_g2_vx_right * minus_rate_dot_2_right,
-                g1_vx_left * t115 + minus_g2_vx_left * t122,
-                g1_vx_right * t128 + minus_g2_vx_right * t135,
-                ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t142),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t147),
+                g1_vx_left * t111 + minus_g2_vx_left * t114,
+                g1_vx_right * t120 + minus_g2_vx_right * t123,
+                ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t130),
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t135),
             ],
             [
                 acceleration[1] + 9.81, g1_vy_left * rate_dot_1_left,
@@ -1750,10 +1739,10 @@ impl FiveBar {
                 ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_left, g1_vy_right,
                 minus_g2_vy_left * minus_rate_dot_2_left,
                 minus_g2_vy_right * minus_rate_dot_2_right,
-                g1_vy_left * t115 + minus_g2_vy_left * t122,
-                g1_vy_right * t128 + minus_g2_vy_right * t135,
-                ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t142),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t147),
+                g1_vy_left * t111 + minus_g2_vy_left * t114,
+                g1_vy_right * t120 + minus_g2_vy_right * t123,
+                ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t130),
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t135),
             ],
         ])
     }
@@ -1906,7 +1895,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 164 operations (54 additions, 105 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 148 intermediates.
+    /// 160 operations (52 additions, 103 multiplications, 5 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 144 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1986,35 +1975,35 @@ impl FiveBar {
         let t108 = g2_vy_left * t49 - g2_vx_left * t52;
         let t113 = t30 * acceleration[0] + t43 * acceleration[1] + 0.04 * t74;
         let rate_dot_2_left = t33 * (t113 + t68 * t76);
-        let t120 = g2_vy_left * t55 - g2_vx_left * t57;
-        let t124 = minus_g2_vx_right * t52 - minus_g2_vy_right * t49;
-        let t129 = t13 * acceleration[0] + t37 * acceleration[1] + 0.04 * t94;
-        let minus_rate_dot_2_right = t16 * (t129 + t88 * t96);
-        let t136 = minus_g2_vx_right * t57 - minus_g2_vy_right * t55;
+        let t118 = t33 * t48;
+        let t120 = t16 * t48;
+        let t125 = t13 * acceleration[0] + t37 * acceleration[1] + 0.04 * t94;
+        let minus_rate_dot_2_right = t16 * (t125 + t88 * t96);
+        let t132 = minus_g2_vx_right * t57 - minus_g2_vy_right * t55;
         let c2_left = 10.0 * t75;
         let minus_s2_left = 20.0 * t32;
-        let t147 = c2_left * (t102 - 0.2 * t74)
+        let t143 = c2_left * (t102 - 0.2 * t74)
             - minus_s2_left * (t100 - 0.2 * minus_rate_dot_1_left);
         let c2_right = 10.0 * t95;
         let s2_right = 20.0 * t15;
-        let t159 = c2_right * (t103 - 0.2 * t94)
+        let t155 = c2_right * (t103 - 0.2 * t94)
             + s2_right * (t101 + 0.2 * rate_dot_1_right);
-        let t165 = minus_rate_1_left + rate_2_left;
-        let t168 = rate_1_right + minus_rate_2_right;
+        let t161 = minus_rate_1_left + rate_2_left;
+        let t164 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 t49 * t50 - t52 * acceleration[0], -minus_rate_dot_1_left, 0.0, t100, 0.0, -t102,
                 0.0, -minus_rate_1_left, 0.0, -::overact::math::sign(minus_rate_1_left), 0.0, 1.0,
-                0.0, t108 * rate_dot_2_left, -(t124 * minus_rate_dot_2_right),
-                4.0 * t113 - t108 * t147, -(t124 * t159), ::overact::math::signed(t108 - 1.0, t165),
-                -::overact::math::signed(t124, t168),
+                0.0, t108 * rate_dot_2_left, -(t120 * minus_rate_dot_2_right),
+                4.0 * t113 - t108 * t143, -(t120 * t155), ::overact::math::signed(t108 - 1.0, t161),
+                -::overact::math::signed(t120, t164),
             ],
             [
                 t55 * t50 - t57 * acceleration[0], 0.0, rate_dot_1_right, 0.0, t101, 0.0, -t103,
                 0.0, rate_1_right, 0.0, ::overact::math::sign(rate_1_right), 0.0, 1.0,
-                t120 * rate_dot_2_left, -(t136 * minus_rate_dot_2_right), -(t120 * t147),
-                4.0 * t129 - t136 * t159, ::overact::math::signed(t120, t165),
-                -::overact::math::signed(t136 - 1.0, t168),
+                t118 * rate_dot_2_left, -(t132 * minus_rate_dot_2_right), -(t118 * t143),
+                4.0 * t125 - t132 * t155, ::overact::math::signed(t118, t161),
+                -::overact::math::signed(t132 - 1.0, t164),
             ],
         ])
     }
@@ -2029,7 +2018,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 137 operations (40 additions, 94 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 127 intermediates.
+    /// 133 operations (40 additions, 90 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 123 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2071,55 +2060,53 @@ impl FiveBar {
         let minus_g2_vy_left = s1_left * t46;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t52 = minus_rate_2_left * minus_rate_2_left;
+        let t53 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t58 = rate_1_left * rate_1_left;
+        let t59 = 0.2 * (rate_1_left * rate_1_left);
         let rate_dot_1_left = t24
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + 0.25 * t52
-                + t58 * (0.2 * c2_left));
+            * (c12_left * acceleration[0] + s12_left * acceleration[1] + t53
+                + c2_left * t59);
         let t66 = 4.0 * t10;
         let minus_g2_vx_right = c1_right * t66;
         let minus_g2_vy_right = s1_right * t66;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t72 = minus_rate_2_right * minus_rate_2_right;
+        let t73 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t78 = rate_1_right * rate_1_right;
+        let t79 = 0.2 * (rate_1_right * rate_1_right);
         let rate_dot_1_right = t11
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + 0.25 * t72
-                + t78 * (0.2 * c2_right));
+            * (c12_right * acceleration[0] + s12_right * acceleration[1] + t73
+                + t79 * c2_right);
         let t83 = 9.81 * c1_left;
         let t84 = 9.81 * c1_right;
         let t85 = 9.81 * s1_left;
         let t86 = 9.81 * s1_right;
         let t91 = minus_g2_vx_left * t35 - minus_g2_vy_left * t32;
-        let t95 = 0.2 * t58;
-        let t96 = c1_left * acceleration[0] + s1_left * acceleration[1] + t95;
-        let minus_rate_dot_2_left = t46 * (t96 + t52 * (0.25 * c2_left));
-        let t104 = minus_g2_vy_left * t40 - minus_g2_vx_left * t38;
-        let t108 = minus_g2_vx_right * t35 - minus_g2_vy_right * t32;
-        let t112 = 0.2 * t78;
-        let t113 = c1_right * acceleration[0] + s1_right * acceleration[1] + t112;
-        let minus_rate_dot_2_right = t66 * (t113 + t72 * (0.25 * c2_right));
-        let t121 = minus_g2_vy_right * t40 - minus_g2_vx_right * t38;
-        let t129 = c2_left * (t85 - t95) + s2_left * (t83 + 0.2 * rate_dot_1_left);
-        let t138 = c2_right * (t86 - t112) + s2_right * (t84 + 0.2 * rate_dot_1_right);
-        let t144 = rate_1_left + minus_rate_2_left;
-        let t147 = rate_1_right + minus_rate_2_right;
+        let t95 = c1_left * acceleration[0] + s1_left * acceleration[1] + t59;
+        let minus_rate_dot_2_left = t46 * (t95 + t53 * c2_left);
+        let t102 = minus_g2_vy_left * t40 - minus_g2_vx_left * t38;
+        let t106 = minus_g2_vx_right * t35 - minus_g2_vy_right * t32;
+        let t110 = c1_right * acceleration[0] + s1_right * acceleration[1] + t79;
+        let minus_rate_dot_2_right = t66 * (t110 + c2_right * t73);
+        let t117 = minus_g2_vy_right * t40 - minus_g2_vx_right * t38;
+        let t125 = c2_left * (t85 - t59) + s2_left * (t83 + 0.2 * rate_dot_1_left);
+        let t134 = c2_right * (t86 - t79) + s2_right * (t84 + 0.2 * rate_dot_1_right);
+        let t140 = rate_1_left + minus_rate_2_left;
+        let t143 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 t32 * t33 - t35 * acceleration[0], rate_dot_1_left, 0.0, t83, 0.0, -t85, 0.0,
                 rate_1_left, 0.0, ::overact::math::sign(rate_1_left), 0.0, 1.0, 0.0,
-                -(t91 * minus_rate_dot_2_left), -(t108 * minus_rate_dot_2_right),
-                0.8 * t96 - t91 * t129, -(t108 * t138), -::overact::math::signed(t91 - 1.0, t144),
-                -::overact::math::signed(t108, t147),
+                -(t91 * minus_rate_dot_2_left), -(t106 * minus_rate_dot_2_right),
+                0.8 * t95 - t91 * t125, -(t106 * t134), -::overact::math::signed(t91 - 1.0, t140),
+                -::overact::math::signed(t106, t143),
             ],
             [
                 t38 * acceleration[0] - t40 * t33, 0.0, rate_dot_1_right, 0.0, t84, 0.0, -t86, 0.0,
                 rate_1_right, 0.0, ::overact::math::sign(rate_1_right), 0.0, 1.0,
-                -(t104 * minus_rate_dot_2_left), -(t121 * minus_rate_dot_2_right), -(t104 * t129),
-                0.8 * t113 - t121 * t138, -::overact::math::signed(t104, t144),
-                -::overact::math::signed(t121 - 1.0, t147),
+                -(t102 * minus_rate_dot_2_left), -(t117 * minus_rate_dot_2_right), -(t102 * t125),
+                0.8 * t110 - t117 * t134, -::overact::math::signed(t102, t140),
+                -::overact::math::signed(t117 - 1.0, t143),
             ],
         ])
     }
@@ -2134,7 +2121,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 190 operations (62 additions, 121 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 178 intermediates.
+    /// 186 operations (60 additions, 119 multiplications, 7 divisions), 2 square roots, 0 trigonometric pairs, 6 signs, 174 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2228,35 +2215,35 @@ impl FiveBar {
         let t134 = g2_vy_left * t49 - g2_vx_left * t115;
         let t139 = t30 * t118 + t43 * t112 + 0.04 * t98;
         let rate_dot_2_left = t33 * (t139 + t96 * t100);
-        let t146 = g2_vy_left * t121 - g2_vx_left * t123;
-        let t150 = minus_g2_vx_right * t115 - minus_g2_vy_right * t49;
-        let t155 = t13 * t118 + t37 * t112 + 0.04 * t83;
-        let minus_rate_dot_2_right = t16 * (t155 + t81 * t85);
-        let t162 = minus_g2_vx_right * t123 - minus_g2_vy_right * t121;
+        let t144 = t33 * t48;
+        let t146 = t16 * t48;
+        let t151 = t13 * t118 + t37 * t112 + 0.04 * t83;
+        let minus_rate_dot_2_right = t16 * (t151 + t81 * t85);
+        let t158 = minus_g2_vx_right * t123 - minus_g2_vy_right * t121;
         let c2_left = 10.0 * t99;
         let minus_s2_left = 20.0 * t32;
-        let t173 = c2_left * (t128 - 0.2 * t98)
+        let t169 = c2_left * (t128 - 0.2 * t98)
             - minus_s2_left * (t126 + 0.2 * actuator_accelerations[0]);
         let c2_right = 10.0 * t84;
         let s2_right = 20.0 * t15;
-        let t185 = c2_right * (t129 - 0.2 * t83)
+        let t181 = c2_right * (t129 - 0.2 * t83)
             + s2_right * (t127 + 0.2 * actuator_accelerations[1]);
-        let t191 = rate_2_left - actuator_velocities[0];
-        let t194 = actuator_velocities[1] + minus_rate_2_right;
+        let t187 = rate_2_left - actuator_velocities[0];
+        let t190 = actuator_velocities[1] + minus_rate_2_right;
         Ok([
             [
                 t49 * t113 - t115 * t118, actuator_accelerations[0], 0.0, t126, 0.0, -t128, 0.0,
                 actuator_velocities[0], 0.0, ::overact::math::sign(actuator_velocities[0]), 0.0,
-                1.0, 0.0, t134 * rate_dot_2_left, -(t150 * minus_rate_dot_2_right),
-                4.0 * t139 - t134 * t173, -(t150 * t185), ::overact::math::signed(t134 - 1.0, t191),
-                -::overact::math::signed(t150, t194),
+                1.0, 0.0, t134 * rate_dot_2_left, -(t146 * minus_rate_dot_2_right),
+                4.0 * t139 - t134 * t169, -(t146 * t181), ::overact::math::signed(t134 - 1.0, t187),
+                -::overact::math::signed(t146, t190),
             ],
             [
                 t121 * t113 - t123 * t118, 0.0, actuator_accelerations[1], 0.0, t127, 0.0, -t129,
                 0.0, actuator_velocities[1], 0.0, ::overact::math::sign(actuator_velocities[1]),
-                0.0, 1.0, t146 * rate_dot_2_left, -(t162 * minus_rate_dot_2_right), -(t146 * t173),
-                4.0 * t155 - t162 * t185, ::overact::math::signed(t146, t191),
-                -::overact::math::signed(t162 - 1.0, t194),
+                0.0, 1.0, t144 * rate_dot_2_left, -(t158 * minus_rate_dot_2_right), -(t144 * t169),
+                4.0 * t151 - t158 * t181, ::overact::math::signed(t144, t187),
+                -::overact::math::signed(t158 - 1.0, t190),
             ],
         ])
     }
@@ -2457,12 +2444,12 @@ impl FiveBar {
         let t215 = 1.0 / t214;
         let t219 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
         let t220 = t219 * t215;
-        let t225 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t219 * t220;
-        ::overact::guard::platform(t225, 14.323546684675748, "actuators")?;
-        let t235 = g2_vy_left * t72 - minus_g1_vy_left * t102 + g1_vy_right * t199
+        let t230 = g2_vy_left * t72 - minus_g1_vy_left * t102 + g1_vy_right * t199
             - minus_g2_vy_right * t206 + parameters[24] * (acceleration[1] + 9.81);
-        let t238 = (t235 - t211 * t220) / t225;
+        let t237 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
+            - t219 * t220;
+        ::overact::guard::platform(t237, 14.323546684675748, "actuators")?;
+        let t238 = (t230 - t211 * t220) / t237;
         let t240 = t211 * t215 - t220 * t238;
         Ok([
             -(minus_g1_vx_left * t240 + minus_g1_vy_left * t238),
@@ -2480,7 +2467,7 @@ impl FiveBar {
     ///
     /// Output: 2.
     ///
-    /// 212 operations (79 additions, 129 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 4 signs, 222 intermediates.
+    /// 210 operations (79 additions, 127 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 4 signs, 220 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2508,12 +2495,13 @@ impl FiveBar {
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
         let t22 = minus_rate_2_left * minus_rate_2_left;
+        let t23 = 0.25 * t22;
         let g1_vy_left = s12_left * t11;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
         let t29 = rate_1_left * rate_1_left;
         let t30 = 0.2 * c2_left;
         let rate_dot_1_left = t11
-            * (c12_left * acceleration[0] + s12_left * acceleration[1] + 0.25 * t22
+            * (c12_left * acceleration[0] + s12_left * acceleration[1] + t23
                 + t29 * t30);
         let t35 = 9.81 * c1_left;
         let t38 = 9.81 * s1_left;
@@ -2524,84 +2512,85 @@ impl FiveBar {
         let t52 = 0.2 * t29;
         let minus_rate_dot_2_left = t16
             * (c1_left * acceleration[0] + s1_left * acceleration[1] + t52
-                + t22 * (0.25 * c2_left));
-        let t61 = t38 - t52;
-        let t64 = t35 + 0.2 * rate_dot_1_left;
-        let t66 = c2_left * t61 + s2_left * t64;
-        let t72 = c2_left * t64 - s2_left * t61;
-        let t79 = 0.2 * s2_left
+                + t23 * c2_left);
+        let t60 = t38 - t52;
+        let t63 = t35 + 0.2 * rate_dot_1_left;
+        let t65 = c2_left * t60 + s2_left * t63;
+        let t71 = c2_left * t63 - s2_left * t60;
+        let t78 = 0.2 * s2_left
             * (parameters[9] * minus_rate_dot_2_left - parameters[8] * t22
-                + parameters[10] * t66)
+                + parameters[10] * t65)
             + t30
-                * (parameters[10] * t72
+                * (parameters[10] * t71
                     - (parameters[8] * minus_rate_dot_2_left + parameters[9] * t22));
-        let t82 = ::overact::math::signed(
+        let t81 = ::overact::math::signed(
             parameters[11],
             rate_1_left + minus_rate_2_left,
         );
-        let t83 = t47 + t79 + t82;
-        let t90 = parameters[8] * t72 - parameters[7] * minus_rate_dot_2_left
-            - parameters[9] * t66 - t82;
+        let t82 = t47 + t78 + t81;
+        let t89 = parameters[8] * t71 - parameters[7] * minus_rate_dot_2_left
+            - parameters[9] * t65 - t81;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t103 = 1.0 / s2_right;
-        let t104 = 5.0 * t103;
-        let g1_vx_right = c12_right * t104;
-        let t109 = 4.0 * t103;
-        let minus_g2_vx_right = c1_right * t109;
-        let minus_g2_vy_right = s1_right * t109;
+        let t102 = 1.0 / s2_right;
+        let t103 = 5.0 * t102;
+        let g1_vx_right = c12_right * t103;
+        let t108 = 4.0 * t102;
+        let minus_g2_vx_right = c1_right * t108;
+        let minus_g2_vy_right = s1_right * t108;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t115 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = s12_right * t104;
+        let t114 = minus_rate_2_right * minus_rate_2_right;
+        let t115 = 0.25 * t114;
+        let g1_vy_right = s12_right * t103;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t122 = rate_1_right * rate_1_right;
-        let t123 = 0.2 * c2_right;
-        let rate_dot_1_right = t104
-            * (c12_right * acceleration[0] + s12_right * acceleration[1] + 0.25 * t115
-                + t122 * t123);
-        let t128 = 9.81 * c1_right;
-        let t131 = 9.81 * s1_right;
-        let t140 = parameters[12] * rate_dot_1_right + parameters[13] * t128
-            - parameters[14] * t131 + parameters[15] * rate_dot_1_right
+        let t121 = rate_1_right * rate_1_right;
+        let t122 = 0.2 * c2_right;
+        let rate_dot_1_right = t103
+            * (c12_right * acceleration[0] + s12_right * acceleration[1] + t115
+                + t121 * t122);
+        let t127 = 9.81 * c1_right;
+        let t130 = 9.81 * s1_right;
+        let t139 = parameters[12] * rate_dot_1_right + parameters[13] * t127
+            - parameters[14] * t130 + parameters[15] * rate_dot_1_right
             + parameters[16] * rate_1_right
             + ::overact::math::signed(parameters[17], rate_1_right) + parameters[18];
-        let t145 = 0.2 * t122;
-        let minus_rate_dot_2_right = t109
-            * (c1_right * acceleration[0] + s1_right * acceleration[1] + t145
-                + t115 * (0.25 * c2_right));
-        let t154 = t131 - t145;
-        let t157 = t128 + 0.2 * rate_dot_1_right;
-        let t159 = c2_right * t154 + s2_right * t157;
-        let t165 = c2_right * t157 - s2_right * t154;
-        let t172 = 0.2 * s2_right
-            * (parameters[21] * minus_rate_dot_2_right - parameters[20] * t115
-                + parameters[22] * t159)
-            + t123
-                * (parameters[22] * t165
-                    - (parameters[20] * minus_rate_dot_2_right + parameters[21] * t115));
-        let t175 = ::overact::math::signed(
+        let t144 = 0.2 * t121;
+        let minus_rate_dot_2_right = t108
+            * (c1_right * acceleration[0] + s1_right * acceleration[1] + t144
+                + t115 * c2_right);
+        let t152 = t130 - t144;
+        let t155 = t127 + 0.2 * rate_dot_1_right;
+        let t157 = c2_right * t152 + s2_right * t155;
+        let t163 = c2_right * t155 - s2_right * t152;
+        let t170 = 0.2 * s2_right
+            * (parameters[21] * minus_rate_dot_2_right - parameters[20] * t114
+                + parameters[22] * t157)
+            + t122
+                * (parameters[22] * t163
+                    - (parameters[20] * minus_rate_dot_2_right + parameters[21] * t114));
+        let t173 = ::overact::math::signed(
             parameters[23],
             rate_1_right + minus_rate_2_right,
         );
-        let t176 = t140 + t172 + t175;
-        let t183 = parameters[20] * t165 - parameters[19] * minus_rate_dot_2_right
-            - parameters[21] * t159 - t175;
-        let t188 = g1_vx_left * t83 - minus_g2_vx_left * t90 + g1_vx_right * t176
-            - minus_g2_vx_right * t183 + acceleration[0] * parameters[24];
-        let t191 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t191, 35.70772285878917, "actuators")?;
-        let t192 = 1.0 / t191;
-        let t196 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
-        let t197 = t196 * t192;
-        let t202 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right - t196 * t197;
-        ::overact::guard::platform(t202, 14.32354668467552, "actuators")?;
-        let t212 = g1_vy_left * t83 - minus_g2_vy_left * t90 + g1_vy_right * t176
-            - minus_g2_vy_right * t183 + parameters[24] * (acceleration[1] + 9.81);
-        let t215 = (t212 - t188 * t197) / t202;
-        let t217 = t188 * t192 - t197 * t215;
+        let t174 = t139 + t170 + t173;
+        let t181 = parameters[20] * t163 - parameters[19] * minus_rate_dot_2_right
+            - parameters[21] * t157 - t173;
+        let t186 = g1_vx_left * t82 - minus_g2_vx_left * t89 + g1_vx_right * t174
+            - minus_g2_vx_right * t181 + acceleration[0] * parameters[24];
+        let t189 = g1_vx_left * g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(t189, 35.70772285878917, "actuators")?;
+        let t190 = 1.0 / t189;
+        let t194 = g1_vx_left * g1_vy_left + g1_vx_right * g1_vy_right;
+        let t195 = t194 * t190;
+        let t205 = g1_vy_left * t82 - minus_g2_vy_left * t89 + g1_vy_right * t174
+            - minus_g2_vy_right * t181 + parameters[24] * (acceleration[1] + 9.81);
+        let t212 = g1_vy_left * g1_vy_left + g1_vy_right * g1_vy_right - t194 * t195;
+        ::overact::guard::platform(t212, 14.32354668467552, "actuators")?;
+        let t213 = (t205 - t186 * t195) / t212;
+        let t215 = t186 * t190 - t195 * t213;
         Ok([
-            g1_vx_left * t217 + g1_vy_left * t215, g1_vx_right * t217 + g1_vy_right * t215,
+            g1_vx_left * t215 + g1_vy_left * t213, g1_vx_right * t215 + g1_vy_right * t213,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -2770,7 +2759,7 @@ impl FiveBar {
     ///
     /// Output: 2 x 2.
     ///
-    /// 160 operations (57 additions, 99 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 159 intermediates.
+    /// 156 operations (57 additions, 95 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 155 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2791,74 +2780,72 @@ impl FiveBar {
         ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
         let t15 = 1.0 / t14;
         let g2_vx_left = t13 * t15;
-        let t18 = t3 - 0.1025;
-        let t19 = t0 - t13;
-        let minus_g1_vx_left = t19 * t15;
-        let t22 = 2.0 * (t18 * minus_g1_vx_left);
-        let c12_left = 4.0 * t19;
-        let t29 = 2.0 * t18;
-        let t34 = 4.0 * t14;
-        let t43 = t29 * (g2_vx_left * parameters[8] - parameters[10] * t22)
-            - t34 * (c12_left * parameters[10] - g2_vx_left * parameters[9])
+        let t18 = t0 - t13;
+        let minus_g1_vx_left = t18 * t15;
+        let t21 = 2.0 * (t3 - 0.1025);
+        let t22 = minus_g1_vx_left * t21;
+        let c12_left = 4.0 * t18;
+        let t33 = 4.0 * t14;
+        let t42 = t21 * (g2_vx_left * parameters[8] - parameters[10] * t22)
+            - t33 * (c12_left * parameters[10] - g2_vx_left * parameters[9])
             - (minus_g1_vx_left * parameters[0] + minus_g1_vx_left * parameters[3]);
-        let t46 = pose[0] - 0.1;
-        let t48 = t46 * t46 + t2;
-        let t49 = 1.0 / t48;
-        let t51 = 0.5 - 0.01125 * t49;
-        let t55 = 0.04 * t49 - t51 * t51;
-        ::overact::guard::reach(t55, "right")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = t46 * t51 + pose[1] * t56;
-        let t59 = t46 - t58;
-        let t60 = t48 * t56;
-        ::overact::guard::leg(t60, 0.04998437255783052, "right")?;
-        let t61 = 1.0 / t60;
-        let g1_vx_right = t59 * t61;
-        let t66 = 4.0 * t60;
-        let minus_g2_vx_right = t58 * t61;
-        let c12_right = 4.0 * t59;
-        let t73 = t48 - 0.1025;
-        let t74 = 2.0 * t73;
-        let t76 = 2.0 * (t73 * g1_vx_right);
-        let t82 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
-            + t66 * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
-            + t74 * (parameters[22] * t76 - minus_g2_vx_right * parameters[20]);
-        let t91 = g2_vx_left
+        let t45 = pose[0] - 0.1;
+        let t47 = t45 * t45 + t2;
+        let t48 = 1.0 / t47;
+        let t50 = 0.5 - 0.01125 * t48;
+        let t54 = 0.04 * t48 - t50 * t50;
+        ::overact::guard::reach(t54, "right")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let t57 = t45 * t50 + pose[1] * t55;
+        let t58 = t45 - t57;
+        let t59 = t47 * t55;
+        ::overact::guard::leg(t59, 0.04998437255783052, "right")?;
+        let t60 = 1.0 / t59;
+        let g1_vx_right = t58 * t60;
+        let t65 = 4.0 * t59;
+        let minus_g2_vx_right = t57 * t60;
+        let c12_right = 4.0 * t58;
+        let t73 = 2.0 * (t47 - 0.1025);
+        let t74 = g1_vx_right * t73;
+        let t80 = g1_vx_right * parameters[12] + g1_vx_right * parameters[15]
+            + t65 * (minus_g2_vx_right * parameters[21] + c12_right * parameters[22])
+            + t73 * (parameters[22] * t74 - minus_g2_vx_right * parameters[20]);
+        let t89 = g2_vx_left
             * (g2_vx_left * parameters[7] - parameters[8] * t22
-                - c12_left * parameters[9]) - minus_g1_vx_left * t43 + g1_vx_right * t82
+                - c12_left * parameters[9]) - minus_g1_vx_left * t42 + g1_vx_right * t80
             - minus_g2_vx_right
-                * (parameters[20] * t76 - minus_g2_vx_right * parameters[19]
+                * (parameters[20] * t74 - minus_g2_vx_right * parameters[19]
                     - c12_right * parameters[21]);
-        let t95 = pose[1] * t6 + t0 * t11;
-        let g2_vy_left = t95 * t15;
-        let t98 = pose[1] - t95;
-        let minus_g1_vy_left = t98 * t15;
-        let t101 = 2.0 * (t18 * minus_g1_vy_left);
-        let s12_left = 4.0 * t98;
-        let t106 = g2_vy_left * parameters[7] - parameters[8] * t101
+        let t93 = pose[1] * t6 + t0 * t11;
+        let g2_vy_left = t93 * t15;
+        let t96 = pose[1] - t93;
+        let minus_g1_vy_left = t96 * t15;
+        let t98 = t21 * minus_g1_vy_left;
+        let s12_left = 4.0 * t96;
+        let t103 = g2_vy_left * parameters[7] - parameters[8] * t98
             - s12_left * parameters[9];
-        let t120 = t29 * (g2_vy_left * parameters[8] - parameters[10] * t101)
-            - t34 * (s12_left * parameters[10] - g2_vy_left * parameters[9])
+        let t117 = t21 * (g2_vy_left * parameters[8] - parameters[10] * t98)
+            - t33 * (s12_left * parameters[10] - g2_vy_left * parameters[9])
             - (minus_g1_vy_left * parameters[0] + minus_g1_vy_left * parameters[3]);
-        let t125 = pose[1] * t51 - t46 * t56;
-        let t126 = pose[1] - t125;
-        let g1_vy_right = t126 * t61;
-        let minus_g2_vy_right = t125 * t61;
-        let s12_right = 4.0 * t126;
-        let t138 = 2.0 * (t73 * g1_vy_right);
-        let t144 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
-            + t66 * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
-            + t74 * (parameters[22] * t138 - minus_g2_vy_right * parameters[20]);
-        let t150 = parameters[20] * t138 - minus_g2_vy_right * parameters[19]
+        let t122 = pose[1] * t50 - t45 * t55;
+        let t123 = pose[1] - t122;
+        let g1_vy_right = t123 * t60;
+        let minus_g2_vy_right = t122 * t60;
+        let s12_right = 4.0 * t123;
+        let t134 = t73 * g1_vy_right;
+        let t140 = g1_vy_right * parameters[12] + g1_vy_right * parameters[15]
+            + t65 * (minus_g2_vy_right * parameters[21] + s12_right * parameters[22])
+            + t73 * (parameters[22] * t134 - minus_g2_vy_right * parameters[20]);
+        let t146 = parameters[20] * t134 - minus_g2_vy_right * parameters[19]
             - s12_right * parameters[21];
-        let t153 = g2_vx_left * t106 - minus_g1_vx_left * t120 + g1_vx_right * t144
-            - minus_g2_vx_right * t150;
+        let t149 = g2_vx_left * t103 - minus_g1_vx_left * t117 + g1_vx_right * t140
+            - minus_g2_vx_right * t146;
         Ok([
-            [t91 + parameters[24], t153],
+            [t89 + parameters[24], t149],
             [
-                t153,
-                g2_vy_left * t106 - minus_g1_vy_left * t120 + g1_vy_right * t144
-                    - minus_g2_vy_right * t150 + parameters[24],
+                t149,
+                g2_vy_left * t103 - minus_g1_vy_left * t117 + g1_vy_right * t140
+                    - minus_g2_vy_right * t146 + parameters[24],
             ],
         ])
     }

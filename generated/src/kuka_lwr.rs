@@ -390,7 +390,7 @@ impl KukaLwr {
     /// Output: 7 x 87.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1152 operations (496 additions, 656 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 946 intermediates.
+    /// 1121 operations (487 additions, 634 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 915 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 7],
@@ -401,394 +401,374 @@ impl KukaLwr {
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
         ]);
-        let t3 = s2_arm * joint_accelerations[0];
-        let t4 = c2_arm * joint_velocities[0];
-        let t5 = joint_velocities[1] * t4;
-        let t6 = t3 + t5;
-        let t8 = s2_arm * joint_velocities[0];
-        let t9 = joint_velocities[1] * t8;
-        let t11 = s2_arm * t6 + c2_arm * t9;
-        let t12 = t8 * t4;
-        let t13 = t5 + t6;
-        let t15 = c2_arm * joint_accelerations[0];
-        let t16 = t15 - t9;
-        let t20 = t8 * t8;
-        let t21 = t4 * t4;
-        let t25 = joint_velocities[1] * joint_velocities[1];
-        let t32 = t12 - joint_accelerations[1];
-        let t35 = 9.81 * c2_arm;
-        let t36 = 9.81 * s2_arm;
-        let t40 = s2_arm * c3_arm;
-        let t46 = s3_arm * t8 + c3_arm * joint_velocities[1];
-        let t48 = c3_arm * t6 - s3_arm * joint_accelerations[1]
-            - joint_velocities[2] * t46;
-        let t50 = s2_arm * s3_arm;
-        let t53 = c3_arm * t8 - s3_arm * joint_velocities[1];
-        let t54 = t4 + joint_velocities[2];
-        let t55 = t53 * t54;
-        let t56 = t50 * t55;
-        let t58 = t53 * t46;
-        let t60 = t40 * t48 - t56 + c2_arm * t58;
-        let t62 = c3_arm * t55;
-        let t63 = s3_arm * t48 + t62;
-        let t64 = t53 * t53;
-        let t65 = t46 * t46;
-        let t66 = t64 - t65;
-        let t72 = s3_arm * t6 + c3_arm * joint_accelerations[1]
-            + joint_velocities[2] * t53;
-        let t73 = t55 + t72;
-        let t75 = t46 * t54;
-        let t76 = t48 - t75;
-        let t83 = t16 + joint_accelerations[2];
-        let t84 = t83 - t58;
-        let t86 = t54 * t54;
-        let t87 = t86 - t64;
-        let t90 = t75 + t48;
-        let t92 = t40 * t84 - t50 * t87 + c2_arm * t90;
-        let t93 = s3_arm * t84;
-        let t98 = t65 - t86;
-        let t100 = t58 + t83;
-        let t103 = t55 - t72;
-        let t105 = t40 * t98 - t50 * t100 + c2_arm * t103;
-        let t107 = c3_arm * t100;
-        let t112 = t56 - t40 * t75 + c2_arm * t83;
-        let t114 = s3_arm * t75 + t62;
-        let t116 = 0.4 * c3_arm;
-        let t123 = t35 - 0.4 * (t20 + t25);
-        let t126 = 0.4 * t32;
-        let t127 = t36 + t126;
-        let t129 = 0.4 * t13;
-        let t131 = s3_arm * t127 + c3_arm * t129;
-        let t132 = 0.4 * t105;
-        let t134 = 0.4 * s3_arm;
-        let t139 = 0.4 * t107 - t134 * (t64 + t86) - s3_arm * t123;
-        let t142 = c3_arm * t127 - s3_arm * t129;
-        let t145 = 0.16 * t11;
-        let t146 = 0.4 * t127;
-        let t152 = t40 * c4_arm - c2_arm * s4_arm;
-        let t158 = s4_arm * t53 + c4_arm * t54;
-        let t160 = c4_arm * t48 - s4_arm * t83 - joint_velocities[3] * t158;
-        let t164 = t40 * s4_arm + c2_arm * c4_arm;
-        let t167 = c4_arm * t53 - s4_arm * t54;
-        let t168 = joint_velocities[3] - t46;
-        let t169 = t167 * t168;
-        let t170 = t164 * t169;
-        let t172 = t167 * t158;
-        let t174 = t152 * t160 - t170 - t50 * t172;
-        let t175 = s3_arm * s4_arm;
-        let t176 = t175 * t169;
-        let t177 = s3_arm * c4_arm;
-        let t181 = t176 - t160 * t177 - c3_arm * t172;
-        let t183 = c4_arm * t169;
-        let t184 = s4_arm * t160 + t183;
-        let t189 = s4_arm * t48 + c4_arm * t83 + joint_velocities[3] * t167;
-        let t190 = t169 + t189;
-        let t192 = t158 * t168;
-        let t193 = t160 - t192;
-        let t196 = t167 * t167;
-        let t197 = t158 * t158;
-        let t198 = t196 - t197;
-        let t209 = joint_accelerations[3] - t72;
-        let t210 = t209 - t172;
-        let t212 = t168 * t168;
-        let t213 = t212 - t196;
-        let t216 = t192 + t160;
-        let t232 = t197 - t212;
-        let t234 = t172 + t209;
-        let t237 = t169 - t189;
-        let t251 = t170 - t152 * t192 - t50 * t209;
-        let t255 = t177 * t192 - t176 - c3_arm * t209;
-        let t257 = s4_arm * t192 + t183;
-        let t258 = 0.4 * t50;
-        let t259 = c4_arm * t258;
-        let t260 = t197 + t212;
-        let t262 = s4_arm * t258;
-        let t265 = 0.4 * t40;
-        let t270 = s4_arm * t142 + c4_arm * t123;
-        let t275 = c4_arm * t116;
-        let t277 = s4_arm * t116;
-        let t288 = t196 + t212;
-        let t295 = c4_arm * t142 - s4_arm * t123;
-        let t299 = t259 * t234 - t262 * t288 - t265 * t193 + t50 * t295 - t152 * t131;
-        let t308 = t275 * t234 - t277 * t288 + t134 * t193 + t131 * t177 + c3_arm * t295;
-        let t309 = s4_arm * t131;
-        let t315 = t152 * c5_arm - t50 * s5_arm;
-        let t321 = c5_arm * t168 - s5_arm * t167;
-        let t323 = c5_arm * t160 + s5_arm * t209 + joint_velocities[4] * t321;
-        let t327 = t152 * s5_arm + t50 * c5_arm;
-        let t330 = c5_arm * t167 + s5_arm * t168;
-        let t331 = t158 + joint_velocities[4];
-        let t332 = t330 * t331;
-        let t333 = t327 * t332;
-        let t335 = t330 * t321;
-        let t337 = t315 * t323 - t333 - t164 * t335;
-        let t340 = s5_arm * t177 - c3_arm * c5_arm;
-        let t341 = t340 * t332;
-        let t344 = c5_arm * t177 + c3_arm * s5_arm;
-        let t348 = t341 - t323 * t344 + t175 * t335;
-        let t349 = 0.39 * s4_arm;
-        let t350 = s5_arm * t349;
-        let t351 = 2.5641025641025643 * t350;
-        let t352 = t351 * t332;
-        let t353 = c5_arm * t349;
-        let t354 = 2.5641025641025643 * t353;
-        let t358 = t352 - t323 * t354 - c4_arm * t335;
-        let t360 = c5_arm * t332;
-        let t361 = s5_arm * t323 + t360;
-        let t362 = t330 * t330;
-        let t363 = t321 * t321;
-        let t364 = t362 - t363;
-        let t370 = c5_arm * t209 - s5_arm * t160 - joint_velocities[4] * t330;
-        let t371 = t332 - t370;
-        let t373 = t321 * t331;
-        let t374 = t373 + t323;
-        let t391 = t189 + joint_accelerations[4];
-        let t392 = t335 + t391;
-        let t394 = t331 * t331;
-        let t395 = t394 - t362;
-        let t398 = t373 - t323;
-        let t407 = t354 * t392;
-        let t411 = s5_arm * t392;
-        let t414 = t174 + t251;
-        let t416 = t181 + t255;
-        let t418 = t257 - t184;
-        let t421 = t363 - t394;
-        let t423 = t335 - t391;
-        let t426 = t332 + t370;
-        let t436 = t351 * t423;
-        let t440 = c5_arm * t423;
-        let t445 = t315 * t373 + t333 + t164 * t391;
-        let t449 = t344 * t373 + t341 + t175 * t391;
-        let t453 = c4_arm * t391 - (t354 * t373 + t352);
-        let t455 = s5_arm * t373 - t360;
-        let t457 = t259 + 0.39 * t50;
-        let t460 = t265 + 0.39 * t152;
-        let t462 = c5_arm * t457 + s5_arm * t460;
-        let t463 = t363 + t394;
-        let t467 = s5_arm * t457 - c5_arm * t460;
-        let t473 = 0.39 * t288 - t270;
-        let t476 = t295 + 0.39 * t234;
-        let t479 = t131 + 0.39 * t193;
-        let t481 = s5_arm * t476 + c5_arm * t479;
-        let t486 = t275 + 0.39 * c3_arm;
-        let t489 = t134 + 0.39 * t177;
-        let t491 = s5_arm * t486 + c5_arm * t489;
-        let t495 = s5_arm * t489 - c5_arm * t486;
-        let t512 = 0.39 * c5_arm;
-        let t518 = t362 + t394;
-        let t526 = c5_arm * t476 - s5_arm * t479;
-        let t529 = t462 * t423 + t467 * t518 + t262 * t374 + t315 * t473 + t164 * t526;
-        let t538 = t495 * t423 - t491 * t518 - t277 * t374 + t473 * t344 + t175 * t526;
-        let t545 = 0.39 * t436 - t353 * t518 + t473 * t354 - c4_arm * t526;
-        let t547 = 0.39 * s5_arm;
-        let t551 = 0.39 * t440 + t547 * t518 - s5_arm * t473;
-        let t568 = t262 * t473 - (t526 * t462 + t481 * t467);
-        let t573 = t526 * t495 - t481 * t491 + t277 * t473;
-        let t576 = t526 * t350 - t481 * t353;
-        let t577 = 0.39 * t476;
-        let t583 = t315 * c6_arm + t164 * s6_arm;
-        let t589 = c6_arm * t331 - s6_arm * t330;
-        let t591 = c6_arm * t323 + s6_arm * t391 + joint_velocities[5] * t589;
-        let t595 = t164 * c6_arm - t315 * s6_arm;
-        let t598 = c6_arm * t330 + s6_arm * t331;
-        let t599 = joint_velocities[5] - t321;
-        let t600 = t598 * t599;
-        let t601 = t595 * t600;
-        let t603 = t598 * t589;
-        let t605 = t583 * t591 + t601 - t327 * t603;
-        let t608 = s6_arm * t344 - c6_arm * t175;
-        let t609 = t608 * t600;
-        let t612 = c6_arm * t344 + s6_arm * t175;
-        let t616 = t609 - t591 * t612 + t340 * t603;
-        let t619 = c4_arm * s6_arm - c6_arm * t354;
-        let t623 = s6_arm * t354 + c4_arm * c6_arm;
-        let t624 = t623 * t600;
-        let t627 = t591 * t619 + t624 + t351 * t603;
-        let t628 = s5_arm * c6_arm;
-        let t630 = s5_arm * s6_arm;
-        let t631 = t630 * t600;
-        let t634 = t591 * t628 - t631 + c5_arm * t603;
-        let t636 = c6_arm * t600;
-        let t637 = s6_arm * t591 + t636;
-        let t638 = t589 * t599;
-        let t639 = t638 + t591;
-        let t645 = c6_arm * t391 - s6_arm * t323 - joint_velocities[5] * t598;
-        let t646 = t600 - t645;
-        let t649 = t598 * t598;
-        let t650 = t589 * t589;
-        let t651 = t649 - t650;
-        let t672 = joint_accelerations[5] - t370;
-        let t673 = t603 + t672;
-        let t675 = t599 * t599;
-        let t676 = t675 - t649;
-        let t679 = t638 - t591;
-        let t709 = t650 - t675;
-        let t711 = t603 - t672;
-        let t714 = t600 + t645;
-        let t738 = t583 * t638 - t601 + t327 * t672;
-        let t742 = t612 * t638 + t609 + t340 * t672;
-        let t746 = t619 * t638 - t624 - t351 * t672;
-        let t750 = t628 * t638 + t631 - c5_arm * t672;
-        let t752 = s6_arm * t638 - t636;
-        let t755 = c6_arm * t462 + s6_arm * t262;
-        let t756 = t650 + t675;
-        let t760 = s6_arm * t462 - c6_arm * t262;
-        let t768 = s6_arm * t526 + c6_arm * t473;
-        let t777 = c6_arm * t495 - s6_arm * t277;
-        let t781 = s6_arm * t495 + c6_arm * t277;
-        let t790 = c6_arm * t350;
-        let t792 = s6_arm * t350;
-        let t799 = c6_arm * t512;
-        let t801 = s6_arm * t512;
-        let t813 = c6_arm * t526 - s6_arm * t473;
-        let t817 = t649 + t675;
-        let t822 = t583 * t481 - t327 * t813 - (t755 * t711 + t760 * t817 + t467 * t639);
-        let t831 = t777 * t711 + t781 * t817 - t491 * t639 + t340 * t813 - t481 * t612;
-        let t840 = t790 * t711 + t792 * t817 - t353 * t639 + t481 * t619 + t351 * t813;
-        let t849 = t799 * t711 + t801 * t817 + t547 * t639 + t481 * t628 + c5_arm * t813;
-        let t850 = s6_arm * t481;
-        let t856 = t583 * c7_arm - t327 * s7_arm;
-        let t862 = s7_arm * t598 + c7_arm * t599;
-        let t864 = c7_arm * t591 - s7_arm * t672 - joint_velocities[6] * t862;
-        let t868 = t583 * s7_arm + t327 * c7_arm;
-        let t871 = c7_arm * t598 - s7_arm * t599;
-        let t872 = t589 + joint_velocities[6];
-        let t873 = t871 * t872;
-        let t874 = t868 * t873;
-        let t876 = t871 * t862;
-        let t878 = t856 * t864 - t874 + t595 * t876;
-        let t881 = s7_arm * t340 - c7_arm * t612;
-        let t885 = s7_arm * t612 + c7_arm * t340;
-        let t886 = t885 * t873;
-        let t889 = t864 * t881 + t886 + t608 * t876;
-        let t892 = c7_arm * t619 + s7_arm * t351;
-        let t896 = c7_arm * t351 - s7_arm * t619;
-        let t897 = t896 * t873;
-        let t900 = t864 * t892 + t897 + t623 * t876;
-        let t903 = c7_arm * t628 + c5_arm * s7_arm;
-        let t907 = c5_arm * c7_arm - s7_arm * t628;
-        let t908 = t907 * t873;
-        let t911 = t864 * t903 + t908 - t630 * t876;
-        let t912 = s6_arm * c7_arm;
-        let t914 = s6_arm * s7_arm;
-        let t915 = t914 * t873;
-        let t918 = t864 * t912 - t915 + c6_arm * t876;
-        let t920 = c7_arm * t873;
-        let t921 = s7_arm * t864 + t920;
-        let t922 = t871 * t871;
-        let t923 = t862 * t862;
-        let t924 = t922 - t923;
-        let t930 = s7_arm * t591 + c7_arm * t672 + joint_velocities[6] * t871;
-        let t931 = t873 + t930;
-        let t933 = t862 * t872;
-        let t934 = t864 - t933;
-        let t961 = t645 + joint_accelerations[6];
-        let t962 = t961 - t876;
-        let t964 = t872 * t872;
-        let t965 = t964 - t922;
-        let t968 = t933 + t864;
-        let t1005 = t923 - t964;
-        let t1007 = t876 + t961;
-        let t1010 = t873 - t930;
-        let t1060 = s7_arm * t755 + c7_arm * t467;
-        let t1064 = s7_arm * t467 - c7_arm * t755;
-        let t1065 = t923 + t964;
-        let t1073 = s7_arm * t813 + c7_arm * t481;
-        let t1079 = c7_arm * t491 - s7_arm * t777;
-        let t1083 = c7_arm * t777 + s7_arm * t491;
-        let t1094 = c7_arm * t353 - s7_arm * t790;
-        let t1098 = c7_arm * t790 + s7_arm * t353;
-        let t1112 = c7_arm * t799 - s7_arm * t547;
-        let t1116 = s7_arm * t799 + c7_arm * t547;
-        let t1128 = t922 + t964;
-        let t1135 = c7_arm * t813 - s7_arm * t481;
+        let t3 = s2_arm * joint_velocities[0];
+        let t4 = joint_velocities[1] * t3;
+        let t5 = c2_arm * joint_accelerations[0];
+        let t6 = t5 - t4;
+        let t7 = t4 - t6;
+        let t8 = c2_arm * t7;
+        let t9 = joint_accelerations[0] + t8;
+        let t10 = c2_arm * joint_velocities[0];
+        let t11 = t3 * t10;
+        let t12 = joint_velocities[1] * t10;
+        let t13 = s2_arm * joint_accelerations[0];
+        let t14 = t13 + t12;
+        let t15 = t12 + t14;
+        let t19 = t3 * t3;
+        let t20 = t10 * t10;
+        let t24 = joint_velocities[1] * joint_velocities[1];
+        let t30 = t11 - joint_accelerations[1];
+        let t33 = 9.81 * c2_arm;
+        let t34 = 9.81 * s2_arm;
+        let t38 = s2_arm * c3_arm;
+        let t41 = s3_arm * t3 + c3_arm * joint_velocities[1];
+        let t42 = t10 + joint_velocities[2];
+        let t43 = t41 * t42;
+        let t44 = t38 * t43;
+        let t45 = s2_arm * s3_arm;
+        let t51 = c3_arm * t3 - s3_arm * joint_velocities[1];
+        let t53 = s3_arm * t14 + c3_arm * joint_accelerations[1]
+            + joint_velocities[2] * t51;
+        let t56 = t51 * t41;
+        let t58 = t44 + t45 * t53 - c2_arm * t56;
+        let t59 = t9 - t58;
+        let t60 = t3 * t42;
+        let t61 = t51 * t42;
+        let t62 = t61 + t53;
+        let t64 = c3_arm * t62 - t60;
+        let t65 = t30 + t64;
+        let t66 = t51 * t51;
+        let t67 = t41 * t41;
+        let t68 = t66 - t67;
+        let t78 = c3_arm * t14 - s3_arm * joint_accelerations[1]
+            - joint_velocities[2] * t41;
+        let t82 = t6 + joint_accelerations[2];
+        let t83 = t82 - t56;
+        let t85 = t42 * t42;
+        let t86 = t85 - t66;
+        let t89 = t43 + t78;
+        let t91 = t38 * t83 - t45 * t86 + c2_arm * t89;
+        let t92 = s3_arm * t83;
+        let t95 = t67 - t85;
+        let t97 = t56 + t82;
+        let t100 = t61 - t53;
+        let t102 = t38 * t95 - t45 * t97 + c2_arm * t100;
+        let t104 = c3_arm * t97;
+        let t109 = t45 * t61 - t44 + c2_arm * t82;
+        let t111 = 0.4 * c3_arm;
+        let t118 = t33 - 0.4 * (t19 + t24);
+        let t121 = 0.4 * t30;
+        let t122 = t34 + t121;
+        let t124 = 0.4 * t15;
+        let t126 = s3_arm * t122 + c3_arm * t124;
+        let t127 = 0.4 * t102;
+        let t129 = 0.4 * s3_arm;
+        let t134 = 0.4 * t104 - t129 * (t66 + t85) - s3_arm * t118;
+        let t137 = c3_arm * t122 - s3_arm * t124;
+        let t140 = 0.16 * t9;
+        let t141 = 0.4 * t122;
+        let t147 = t38 * c4_arm - c2_arm * s4_arm;
+        let t153 = s4_arm * t51 + c4_arm * t42;
+        let t155 = c4_arm * t78 - s4_arm * t82 - joint_velocities[3] * t153;
+        let t159 = t38 * s4_arm + c2_arm * c4_arm;
+        let t162 = c4_arm * t51 - s4_arm * t42;
+        let t163 = joint_velocities[3] - t41;
+        let t164 = t162 * t163;
+        let t165 = t159 * t164;
+        let t167 = t162 * t153;
+        let t169 = t147 * t155 - t165 - t45 * t167;
+        let t170 = s3_arm * s4_arm;
+        let t171 = t170 * t164;
+        let t172 = s3_arm * c4_arm;
+        let t176 = t171 - t155 * t172 - c3_arm * t167;
+        let t177 = t51 * t163;
+        let t182 = s4_arm * t78 + c4_arm * t82 + joint_velocities[3] * t162;
+        let t183 = t164 + t182;
+        let t185 = c4_arm * t183 - t177;
+        let t186 = t185 - t97;
+        let t188 = t153 * t163;
+        let t189 = t155 - t188;
+        let t192 = t162 * t162;
+        let t193 = t153 * t153;
+        let t194 = t192 - t193;
+        let t204 = joint_accelerations[3] - t53;
+        let t205 = t204 - t167;
+        let t207 = t163 * t163;
+        let t208 = t207 - t192;
+        let t211 = t188 + t155;
+        let t226 = t193 - t207;
+        let t228 = t167 + t204;
+        let t231 = t164 - t182;
+        let t245 = t165 - t147 * t188 - t45 * t204;
+        let t249 = t172 * t188 - t171 - c3_arm * t204;
+        let t250 = 0.4 * t45;
+        let t251 = c4_arm * t250;
+        let t252 = t193 + t207;
+        let t254 = s4_arm * t250;
+        let t257 = 0.4 * t38;
+        let t262 = s4_arm * t137 + c4_arm * t118;
+        let t267 = c4_arm * t111;
+        let t269 = s4_arm * t111;
+        let t280 = t192 + t207;
+        let t287 = c4_arm * t137 - s4_arm * t118;
+        let t291 = t251 * t228 - t254 * t280 - t257 * t189 + t45 * t287 - t147 * t126;
+        let t300 = t267 * t228 - t269 * t280 + t129 * t189 + t126 * t172 + c3_arm * t287;
+        let t307 = t147 * c5_arm - t45 * s5_arm;
+        let t313 = c5_arm * t163 - s5_arm * t162;
+        let t315 = c5_arm * t155 + s5_arm * t204 + joint_velocities[4] * t313;
+        let t319 = t147 * s5_arm + t45 * c5_arm;
+        let t322 = c5_arm * t162 + s5_arm * t163;
+        let t323 = t153 + joint_velocities[4];
+        let t324 = t322 * t323;
+        let t325 = t319 * t324;
+        let t327 = t322 * t313;
+        let t329 = t307 * t315 - t325 - t159 * t327;
+        let t332 = s5_arm * t172 - c3_arm * c5_arm;
+        let t333 = t332 * t324;
+        let t336 = c5_arm * t172 + c3_arm * s5_arm;
+        let t340 = t333 - t315 * t336 + t170 * t327;
+        let t341 = 0.39 * s4_arm;
+        let t342 = s5_arm * t341;
+        let t343 = 2.5641025641025643 * t342;
+        let t344 = t343 * t324;
+        let t345 = c5_arm * t341;
+        let t346 = 2.5641025641025643 * t345;
+        let t350 = t344 - t315 * t346 - c4_arm * t327;
+        let t351 = t162 * t323;
+        let t356 = c5_arm * t204 - s5_arm * t155 - joint_velocities[4] * t322;
+        let t357 = t324 - t356;
+        let t359 = t351 - c5_arm * t357;
+        let t360 = t228 - t359;
+        let t361 = t322 * t322;
+        let t362 = t313 * t313;
+        let t363 = t361 - t362;
+        let t366 = t313 * t323;
+        let t367 = t366 + t315;
+        let t383 = t182 + joint_accelerations[4];
+        let t384 = t327 + t383;
+        let t386 = t323 * t323;
+        let t387 = t386 - t361;
+        let t390 = t366 - t315;
+        let t399 = t346 * t384;
+        let t403 = s5_arm * t384;
+        let t406 = t169 + t245;
+        let t408 = t176 + t249;
+        let t412 = t362 - t386;
+        let t414 = t327 - t383;
+        let t417 = t324 + t356;
+        let t427 = t343 * t414;
+        let t431 = c5_arm * t414;
+        let t436 = t307 * t366 + t325 + t159 * t383;
+        let t440 = t336 * t366 + t333 + t170 * t383;
+        let t444 = c4_arm * t383 - (t346 * t366 + t344);
+        let t446 = t251 + 0.39 * t45;
+        let t449 = t257 + 0.39 * t147;
+        let t451 = c5_arm * t446 + s5_arm * t449;
+        let t452 = t362 + t386;
+        let t456 = s5_arm * t446 - c5_arm * t449;
+        let t462 = 0.39 * t280 - t262;
+        let t464 = 0.39 * t228;
+        let t465 = t287 + t464;
+        let t467 = 0.39 * t189;
+        let t468 = t126 + t467;
+        let t470 = s5_arm * t465 + c5_arm * t468;
+        let t475 = t267 + 0.39 * c3_arm;
+        let t478 = t129 + 0.39 * t172;
+        let t480 = s5_arm * t475 + c5_arm * t478;
+        let t484 = s5_arm * t478 - c5_arm * t475;
+        let t501 = 0.39 * c5_arm;
+        let t507 = t361 + t386;
+        let t515 = c5_arm * t465 - s5_arm * t468;
+        let t518 = t451 * t414 + t456 * t507 + t254 * t367 + t307 * t462 + t159 * t515;
+        let t527 = t484 * t414 - t480 * t507 - t269 * t367 + t462 * t336 + t170 * t515;
+        let t534 = 0.39 * t427 - t345 * t507 + t462 * t346 - c4_arm * t515;
+        let t536 = 0.39 * s5_arm;
+        let t540 = 0.39 * t431 + t536 * t507 - s5_arm * t462;
+        let t541 = 0.39 * t406;
+        let t542 = t291 - t541;
+        let t544 = 0.39 * t408;
+        let t545 = t300 - t544;
+        let t548 = s4_arm * t468;
+        let t552 = t140 - 0.39 * t542;
+        let t554 = t141 + 0.39 * t545;
+        let t555 = 0.39 * t548;
+        let t556 = 0.39 * t465;
+        let t562 = t307 * c6_arm + t159 * s6_arm;
+        let t568 = c6_arm * t323 - s6_arm * t322;
+        let t570 = c6_arm * t315 + s6_arm * t383 + joint_velocities[5] * t568;
+        let t574 = t159 * c6_arm - t307 * s6_arm;
+        let t577 = c6_arm * t322 + s6_arm * t323;
+        let t578 = joint_velocities[5] - t313;
+        let t579 = t577 * t578;
+        let t580 = t574 * t579;
+        let t582 = t577 * t568;
+        let t584 = t562 * t570 + t580 - t319 * t582;
+        let t587 = s6_arm * t336 - c6_arm * t170;
+        let t588 = t587 * t579;
+        let t591 = c6_arm * t336 + s6_arm * t170;
+        let t595 = t588 - t570 * t591 + t332 * t582;
+        let t598 = c4_arm * s6_arm - c6_arm * t346;
+        let t602 = s6_arm * t346 + c4_arm * c6_arm;
+        let t603 = t602 * t579;
+        let t606 = t570 * t598 + t603 + t343 * t582;
+        let t607 = s5_arm * c6_arm;
+        let t609 = s5_arm * s6_arm;
+        let t610 = t609 * t579;
+        let t613 = t570 * t607 - t610 + c5_arm * t582;
+        let t614 = t322 * t578;
+        let t619 = c6_arm * t383 - s6_arm * t315 - joint_velocities[5] * t577;
+        let t620 = t579 - t619;
+        let t622 = t614 - c6_arm * t620;
+        let t623 = t414 + t622;
+        let t624 = t568 * t578;
+        let t625 = t624 + t570;
+        let t629 = t577 * t577;
+        let t630 = t568 * t568;
+        let t631 = t629 - t630;
+        let t651 = joint_accelerations[5] - t356;
+        let t652 = t582 + t651;
+        let t654 = t578 * t578;
+        let t655 = t654 - t629;
+        let t658 = t624 - t570;
+        let t687 = t630 - t654;
+        let t689 = t582 - t651;
+        let t692 = t579 + t619;
+        let t716 = t562 * t624 - t580 + t319 * t651;
+        let t720 = t591 * t624 + t588 + t332 * t651;
+        let t724 = t598 * t624 - t603 - t343 * t651;
+        let t728 = t607 * t624 + t610 - c5_arm * t651;
+        let t731 = c6_arm * t451 + s6_arm * t254;
+        let t732 = t630 + t654;
+        let t736 = s6_arm * t451 - c6_arm * t254;
+        let t744 = s6_arm * t515 + c6_arm * t462;
+        let t753 = c6_arm * t484 - s6_arm * t269;
+        let t757 = s6_arm * t484 + c6_arm * t269;
+        let t766 = c6_arm * t342;
+        let t768 = s6_arm * t342;
+        let t775 = c6_arm * t501;
+        let t777 = s6_arm * t501;
+        let t789 = c6_arm * t515 - s6_arm * t462;
+        let t793 = t629 + t654;
+        let t798 = t562 * t470 - t319 * t789 - (t731 * t689 + t736 * t793 + t456 * t625);
+        let t807 = t753 * t689 + t757 * t793 - t480 * t625 + t332 * t789 - t470 * t591;
+        let t816 = t766 * t689 + t768 * t793 - t345 * t625 + t470 * t598 + t343 * t789;
+        let t825 = t775 * t689 + t777 * t793 + t536 * t625 + t470 * t607 + c5_arm * t789;
+        let t826 = s6_arm * t470;
+        let t832 = t562 * c7_arm - t319 * s7_arm;
+        let t838 = s7_arm * t577 + c7_arm * t578;
+        let t840 = c7_arm * t570 - s7_arm * t651 - joint_velocities[6] * t838;
+        let t844 = t562 * s7_arm + t319 * c7_arm;
+        let t847 = c7_arm * t577 - s7_arm * t578;
+        let t848 = t568 + joint_velocities[6];
+        let t849 = t847 * t848;
+        let t850 = t844 * t849;
+        let t852 = t847 * t838;
+        let t854 = t832 * t840 - t850 + t574 * t852;
+        let t857 = s7_arm * t332 - c7_arm * t591;
+        let t861 = s7_arm * t591 + c7_arm * t332;
+        let t862 = t861 * t849;
+        let t865 = t840 * t857 + t862 + t587 * t852;
+        let t868 = c7_arm * t598 + s7_arm * t343;
+        let t872 = c7_arm * t343 - s7_arm * t598;
+        let t873 = t872 * t849;
+        let t876 = t840 * t868 + t873 + t602 * t852;
+        let t879 = c7_arm * t607 + c5_arm * s7_arm;
+        let t883 = c5_arm * c7_arm - s7_arm * t607;
+        let t884 = t883 * t849;
+        let t887 = t840 * t879 + t884 - t609 * t852;
+        let t888 = s6_arm * c7_arm;
+        let t890 = s6_arm * s7_arm;
+        let t891 = t890 * t849;
+        let t894 = t840 * t888 - t891 + c6_arm * t852;
+        let t895 = t577 * t848;
+        let t900 = s7_arm * t570 + c7_arm * t651 + joint_velocities[6] * t847;
+        let t901 = t849 + t900;
+        let t903 = c7_arm * t901 - t895;
+        let t904 = t689 + t903;
+        let t905 = t847 * t847;
+        let t906 = t838 * t838;
+        let t907 = t905 - t906;
+        let t910 = t838 * t848;
+        let t911 = t840 - t910;
+        let t937 = t619 + joint_accelerations[6];
+        let t938 = t937 - t852;
+        let t940 = t848 * t848;
+        let t941 = t940 - t905;
+        let t944 = t910 + t840;
+        let t980 = t906 - t940;
+        let t982 = t852 + t937;
+        let t985 = t849 - t900;
+        let t1033 = s7_arm * t731 + c7_arm * t456;
+        let t1037 = s7_arm * t456 - c7_arm * t731;
+        let t1038 = t906 + t940;
+        let t1046 = s7_arm * t789 + c7_arm * t470;
+        let t1052 = c7_arm * t480 - s7_arm * t753;
+        let t1056 = c7_arm * t753 + s7_arm * t480;
+        let t1065 = t341 * t883;
+        let t1067 = t341 * t879;
+        let t1081 = c7_arm * t775 - s7_arm * t536;
+        let t1085 = s7_arm * t775 + c7_arm * t536;
+        let t1097 = t905 + t940;
+        let t1104 = c7_arm * t789 - s7_arm * t470;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t11,
-                c2_arm * t13 - s2_arm * (t9 - t16),
-                s2_arm * (t12 + joint_accelerations[1]) + c2_arm * (t25 - t20),
-                joint_accelerations[0] - t11, s2_arm * (t21 - t25) - c2_arm * t32, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t60, c2_arm * t66 - (t40 * t73 + t50 * t76), t92, t11 - t60,
-                t105, t112, -(0.4 * t92), -t132, 0.8 * t11, t145, 0.0, 0.0, 0.0, 0.0, t174,
-                -(t152 * t190 + t164 * t193 + t50 * t198), t152 * t210 - t164 * t213 - t50 * t216,
-                t60 + t112 - t174, t152 * t232 - t164 * t234 - t50 * t237, t251,
-                t259 * t260 + t262 * t210 - t265 * t190 + t50 * t270 - t164 * t131, t299, -t132,
-                t145, 0.0, 0.0, 0.0, 0.0, t337, t164 * t364 - (t315 * t371 + t327 * t374),
-                t315 * t392 - t327 * t395 - t164 * t398, t414 - t337,
-                t315 * t421 + t327 * t423 + t164 * t426, t445,
-                t462 * t463 + t467 * t392 - t262 * t371 - (t327 * t473 + t164 * t481), -t529,
-                0.78 * (t414 - 1.2820512820512822 * t299), t568, 0.0, 0.0, 0.0, 0.0, t605,
-                t595 * t639 - t583 * t646 + t327 * t651, t583 * t673 + t595 * t676 - t327 * t679,
-                t337 + t445 - t605, t583 * t709 - t595 * t711 + t327 * t714, t738,
-                t755 * t756 + t760 * t673 - t467 * t646 - (t595 * t481 + t327 * t768), t822, t529,
-                t568, 0.0, 0.0, 0.0, 0.0, t878, t595 * t924 - (t856 * t931 + t868 * t934),
-                t856 * t962 - t868 * t965 + t595 * t968, t605 + t738 - t878,
-                t856 * t1005 - t868 * t1007 + t595 * t1010, t874 - t856 * t933 + t595 * t961,
-                t1060 * t962 - t1064 * t1065 + t760 * t931
-                    - (t868 * t768 + t595 * t1073),
-                t760 * t934 - (t1064 * t1007 + t1060 * t1128)
-                    - (t856 * t768 + t595 * t1135),
-                t822,
-                t568,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t9, c2_arm * t15 - s2_arm * t7,
+                s2_arm * (t11 + joint_accelerations[1]) + c2_arm * (t24 - t19), -t8,
+                s2_arm * (t20 - t24) - c2_arm * t30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t59,
+                c2_arm * t68 - s2_arm * (t65 + t64), t91, t58, t102, t109, -(0.4 * t91), -t127,
+                0.8 * t9, t140, 0.0, 0.0, 0.0, 0.0, t169, -(t147 * t183 + t159 * t189 + t45 * t194),
+                t147 * t205 - t159 * t208 - t45 * t211, t59 + t109 - t169,
+                t147 * t226 - t159 * t228 - t45 * t231, t245,
+                t251 * t252 + t254 * t205 - t257 * t183 + t45 * t262 - t159 * t126, t291, -t127,
+                t140, 0.0, 0.0, 0.0, 0.0, t329, t159 * t363 - (t307 * t357 + t319 * t367),
+                t307 * t384 - t319 * t387 - t159 * t390, t406 - t329,
+                t307 * t412 + t319 * t414 + t159 * t417, t436,
+                t451 * t452 + t456 * t384 - t254 * t357 - (t319 * t462 + t159 * t470), -t518,
+                t541 - t542, t552, 0.0, 0.0, 0.0, 0.0, t584,
+                t574 * t625 - t562 * t620 + t319 * t631, t562 * t652 + t574 * t655 - t319 * t658,
+                t329 + t436 - t584, t562 * t687 - t574 * t689 + t319 * t692, t716,
+                t731 * t732 + t736 * t652 - t456 * t620 - (t574 * t470 + t319 * t744), t798, t518,
+                t552, 0.0, 0.0, 0.0, 0.0, t854, t574 * t907 - (t832 * t901 + t844 * t911),
+                t832 * t938 - t844 * t941 + t574 * t944, t584 + t716 - t854,
+                t832 * t980 - t844 * t982 + t574 * t985, t850 - t832 * t910 + t574 * t937,
+                t1033 * t938 - t1037 * t1038 + t736 * t901
+                    - (t844 * t744 + t574 * t1046),
+                t736 * t911 - (t1037 * t982 + t1033 * t1097)
+                    - (t832 * t744 + t574 * t1104),
+                t798,
+                t552,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t12, t20 - t21, t3, t12, t15, joint_accelerations[1], t35,
-                -t36, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t63, s3_arm * t73 - c3_arm * t76,
-                -(t93 + c3_arm * t87), t63 - t32, -(s3_arm * t98 + t107), t114,
-                t116 * (t65 + t86) + 0.4 * t93 + c3_arm * t123, t139, -(t126 + t127), -t146, 0.0,
-                0.0, 0.0, 0.0, t181, t177 * t190 + t175 * t193 - c3_arm * t198,
-                t175 * t213 - t177 * t210 - c3_arm * t216, t114 - t63 - t181,
-                t175 * t234 - t177 * t232 - c3_arm * t237, t255,
-                t275 * t260 + t277 * t210 + t134 * t190 + t131 * t175 + c3_arm * t270, t308, t139,
-                -t146, 0.0, 0.0, 0.0, 0.0, t348, t344 * t371 + t340 * t374 - t175 * t364,
-                t340 * t395 - t344 * t392 + t175 * t398, t416 - t348,
-                -(t344 * t421 + t340 * t423 + t175 * t426), -t449,
-                t491 * t392 - t495 * t463 - t277 * t371 + t473 * t340 + t175 * t481, t538,
-                0.78 * (t416 - 1.2820512820512822 * t308), t573, 0.0, 0.0, 0.0, 0.0, t616,
-                t612 * t646 + t608 * t639 - t340 * t651, t608 * t676 - t612 * t673 + t340 * t679,
-                t348 - t449 - t616, -(t612 * t709 + t608 * t711 + t340 * t714), -t742,
-                t340 * t768 - t481 * t608 - (t777 * t756 + t781 * t673 + t491 * t646), t831, -t538,
-                t573, 0.0, 0.0, 0.0, 0.0, t889, t885 * t934 - t881 * t931 + t608 * t924,
-                t881 * t962 + t885 * t965 + t608 * t968, t616 - t742 - t889,
-                t881 * t1005 + t885 * t1007 + t608 * t1010, t608 * t961 - (t881 * t933 + t886),
-                t1079 * t962 - t1083 * t1065 - t781 * t931 + t768 * t885 - t608 * t1073,
-                -(t1083 * t1007 + t1079 * t1128 + t781 * t934 + t768 * t881
-                    + t608 * t1135),
-                t831,
-                t573,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t58, t66, t90, -t58, t103, t83, -t131, -t142, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t184,
-                s4_arm * t190 - c4_arm * t193, -(s4_arm * t210 + c4_arm * t213), t100 + t184,
-                -(s4_arm * t232 + c4_arm * t234), t257, -(c4_arm * t131), t309, -t142, 0.0, 0.0,
-                0.0, 0.0, 0.0, t358, t354 * t371 + t351 * t374 + c4_arm * t364,
-                t351 * t395 - t407 - c4_arm * t398, t418 - t358,
-                c4_arm * t426 - (t354 * t421 + t436), t453,
-                0.39 * t407 - t350 * t463 + t473 * t351 - c4_arm * t481, t545,
-                0.78 * (t418 - 1.2820512820512822 * t309), t576, 0.0, 0.0, 0.0, 0.0, t627,
-                t623 * t639 - t619 * t646 - t351 * t651, t619 * t673 + t623 * t676 + t351 * t679,
-                t358 + t453 - t627, t619 * t709 - t623 * t711 - t351 * t714, t746,
-                t351 * t768 - t481 * t623 - (t790 * t756 + t792 * t673 + t353 * t646), t840, -t545,
-                t576, 0.0, 0.0, 0.0, 0.0, t900, t896 * t934 - t892 * t931 + t623 * t924,
-                t892 * t962 + t896 * t965 + t623 * t968, t627 + t746 - t900,
-                t892 * t1005 + t896 * t1007 + t623 * t1010, t623 * t961 - (t892 * t933 + t897),
-                t1094 * t962 - t1098 * t1065 - t792 * t931 + t768 * t896 - t623 * t1073,
-                -(t1098 * t1007 + t1094 * t1128 + t792 * t934 + t768 * t892
-                    + t623 * t1135),
-                t840,
-                t576,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
+                -t34, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t65,
+                s3_arm * t62 - c3_arm * (t78 - t43), -(t92 + c3_arm * t86), t64,
+                -(s3_arm * t95 + t104), t60, t111 * (t67 + t85) + 0.4 * t92 + c3_arm * t118, t134,
+                -(t121 + t122), -t141, 0.0, 0.0, 0.0, 0.0, t176,
+                s3_arm * (t186 + t185) - c3_arm * t194, t170 * t208 - t172 * t205 - c3_arm * t211,
+                -(t176 + t65 - t60), t170 * t228 - t172 * t226 - c3_arm * t231, t249,
+                t267 * t252 + t269 * t205 + t129 * t183 + t126 * t170 + c3_arm * t262, t300, t134,
+                -t141, 0.0, 0.0, 0.0, 0.0, t340, t336 * t357 + t332 * t367 - t170 * t363,
+                t332 * t387 - t336 * t384 + t170 * t390, t408 - t340,
+                -(t336 * t412 + t332 * t414 + t170 * t417), -t440,
+                t480 * t384 - t484 * t452 - t269 * t357 + t462 * t332 + t170 * t470, t527,
+                t544 - t545, -t554, 0.0, 0.0, 0.0, 0.0, t595,
+                t591 * t620 + t587 * t625 - t332 * t631, t587 * t655 - t591 * t652 + t332 * t658,
+                t340 - t440 - t595, -(t591 * t687 + t587 * t689 + t332 * t692), -t720,
+                t332 * t744 - t470 * t587 - (t753 * t732 + t757 * t652 + t480 * t620), t807, -t527,
+                -t554, 0.0, 0.0, 0.0, 0.0, t865, t861 * t911 - t857 * t901 + t587 * t907,
+                t857 * t938 + t861 * t941 + t587 * t944, t595 - t720 - t865,
+                t857 * t980 + t861 * t982 + t587 * t985, t587 * t937 - (t857 * t910 + t862),
+                t1052 * t938 - t1056 * t1038 - t757 * t901 + t744 * t861 - t587 * t1046,
+                -(t1056 * t982 + t1052 * t1097 + t757 * t911 + t744 * t857
+                    + t587 * t1104),
+                t807,
+                -t554,
                 0.0,
                 0.0,
                 0.0,
@@ -796,24 +776,50 @@ impl KukaLwr {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t172, t198,
-                t216, -t172, t237, t209, -t270, -t295, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t361,
-                c5_arm * t374 - s5_arm * t371, t411 + c5_arm * t395, t234 - t361,
-                s5_arm * t421 - t440, t455, c5_arm * t473 - (t512 * t463 + 0.39 * t411), t551,
-                0.78 * (t234 + 1.2820512820512822 * t295), t577, 0.0, 0.0, 0.0, 0.0, t634,
-                -(t628 * t646 + t630 * t639 + c5_arm * t651),
-                t628 * t673 - t630 * t676 + c5_arm * t679, t361 + t455 - t634,
-                t628 * t709 + t630 * t711 - c5_arm * t714, t750,
-                t547 * t646 - (t799 * t756 + t801 * t673) + t481 * t630 + c5_arm * t768, t849,
-                -t551, t577, 0.0, 0.0, 0.0, 0.0, t911, t907 * t934 - t903 * t931 - t630 * t924,
-                t903 * t962 + t907 * t965 - t630 * t968, t634 + t750 - t911,
-                t903 * t1005 + t907 * t1007 - t630 * t1010, -(t903 * t933 + t908 + t630 * t961),
-                t768 * t907 + t630 * t1073
-                    - (t1112 * t1065 + t1116 * t962 + t801 * t931),
-                t1116 * t1128 - t1112 * t1007 - t801 * t934 + t630 * t1135 - t768 * t903,
-                t849,
-                t577,
+                t56, t68, t89, -t56, t100, t82, -t126, -t137, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t186,
+                s4_arm * t183 - c4_arm * t189, -(s4_arm * t205 + c4_arm * t208), t185,
+                -(s4_arm * t226 + c4_arm * t228), t177, -(c4_arm * t126), s4_arm * t126, -t137, 0.0,
+                0.0, 0.0, 0.0, 0.0, t350, s4_arm * (t360 - t359) + c4_arm * t363,
+                t343 * t387 - t399 - c4_arm * t390, -(t350 + t186 - t177),
+                c4_arm * t417 - (t346 * t412 + t427), t444,
+                0.39 * t399 - t342 * t452 + t462 * t343 - c4_arm * t470, t534,
+                -(s4_arm * t467 + t548), -t555, 0.0, 0.0, 0.0, 0.0, t606,
+                t602 * t625 - t598 * t620 - t343 * t631, t598 * t652 + t602 * t655 + t343 * t658,
+                t350 + t444 - t606, t598 * t687 - t602 * t689 - t343 * t692, t724,
+                t343 * t744 - t470 * t602 - (t766 * t732 + t768 * t652 + t345 * t620), t816, -t534,
+                -t555, 0.0, 0.0, 0.0, 0.0, t876, t872 * t911 - t868 * t901 + t602 * t907,
+                t868 * t938 + t872 * t941 + t602 * t944, t606 + t724 - t876,
+                t868 * t980 + t872 * t982 + t602 * t985, t602 * t937 - (t868 * t910 + t873),
+                t1065 * t938 - t1067 * t1038 - t768 * t901 + t744 * t872 - t602 * t1046,
+                -(t1067 * t982 + t1065 * t1097 + t768 * t911 + t744 * t868
+                    + t602 * t1104),
+                t816,
+                -t555,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t167, t194,
+                t211, -t167, t231, t204, -t262, -t287, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t360,
+                c5_arm * t367 - s5_arm * t357, t403 + c5_arm * t387, t359, s5_arm * t412 - t431,
+                -t351, c5_arm * t462 - (t501 * t452 + 0.39 * t403), t540, t464 + t465, t556, 0.0,
+                0.0, 0.0, 0.0, t613, -(c5_arm * t631 - s5_arm * (t623 + t622)),
+                t607 * t652 - t609 * t655 + c5_arm * t658, -(t613 - (t360 - t351)),
+                t607 * t687 + t609 * t689 - c5_arm * t692, t728,
+                t536 * t620 - (t775 * t732 + t777 * t652) + t470 * t609 + c5_arm * t744, t825,
+                -t540, t556, 0.0, 0.0, 0.0, 0.0, t887, t883 * t911 - t879 * t901 - t609 * t907,
+                t879 * t938 + t883 * t941 - t609 * t944, t613 + t728 - t887,
+                t879 * t980 + t883 * t982 - t609 * t985, -(t879 * t910 + t884 + t609 * t937),
+                t744 * t883 + t609 * t1046
+                    - (t1081 * t1038 + t1085 * t938 + t777 * t901),
+                t1085 * t1097 - t1081 * t982 - t777 * t911 + t609 * t1104 - t744 * t879,
+                t825,
+                t556,
                 0.0,
                 0.0,
                 0.0,
@@ -822,34 +828,34 @@ impl KukaLwr {
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t335, t364, -t398, t335,
-                t426, t391, -t481, -t526, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, t637,
-                c6_arm * t639 - s6_arm * t646, s6_arm * t673 + c6_arm * t676, -(t423 + t637),
-                s6_arm * t709 - c6_arm * t711, t752, -(c6_arm * t481), t850, t526, 0.0, 0.0, 0.0,
-                0.0, 0.0, t918, c6_arm * t924 - (t912 * t931 + t914 * t934),
-                t912 * t962 - t914 * t965 + c6_arm * t968, t637 + t752 - t918,
-                t912 * t1005 - t914 * t1007 + c6_arm * t1010, t915 - t912 * t933 + c6_arm * t961,
-                -(t768 * t914 + c6_arm * t1073), -(t768 * t912 + c6_arm * t1135), t850, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t327, t363, -t390, t327,
+                t417, t383, -t470, -t515, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, -t623,
+                c6_arm * t625 - s6_arm * t620, s6_arm * t652 + c6_arm * t655, t622,
+                s6_arm * t687 - c6_arm * t689, -t614, -(c6_arm * t470), t826, t515, 0.0, 0.0, 0.0,
+                0.0, 0.0, t894, c6_arm * t907 - s6_arm * (t904 + t903),
+                t888 * t938 - t890 * t941 + c6_arm * t944, -(t894 + t623 + t614),
+                t888 * t980 - t890 * t982 + c6_arm * t985, t891 - t888 * t910 + c6_arm * t937,
+                -(t744 * t890 + c6_arm * t1046), -(t744 * t888 + c6_arm * t1104), t826, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t603, t651, -t679, t603, t714, t672, -t768,
-                -t813, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -t921,
-                s7_arm * t931 - c7_arm * t934, -(s7_arm * t962 + c7_arm * t965), t921 - t711,
-                -(s7_arm * t1005 + c7_arm * t1007), s7_arm * t933 + t920, -(c7_arm * t768),
-                s7_arm * t768, -t813, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t582, t631, -t658, t582, t692, t651, -t744,
+                -t789, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -t904,
+                s7_arm * t901 - c7_arm * t911, -(s7_arm * t938 + c7_arm * t941), t903,
+                -(s7_arm * t980 + c7_arm * t982), t895, -(c7_arm * t744), s7_arm * t744, -t789, 0.0,
+                0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t876, t924, t968, -t876, t1010, t961, -t1073, -t1135, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t852, t907, t944, -t852, t985, t937, -t1046, -t1104, 0.0,
                 0.0, joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],
@@ -865,7 +871,7 @@ impl KukaLwr {
     /// Output: 7 x 69.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1087 operations (451 additions, 636 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 914 intermediates.
+    /// 1071 operations (443 additions, 628 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 898 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 7],
@@ -876,338 +882,337 @@ impl KukaLwr {
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
         ]);
-        let t3 = s2_arm * joint_accelerations[0];
-        let t4 = c2_arm * joint_velocities[0];
-        let t5 = joint_velocities[1] * t4;
-        let t6 = t3 + t5;
-        let t8 = s2_arm * joint_velocities[0];
-        let t9 = joint_velocities[1] * t8;
-        let t12 = t8 * t4;
-        let t13 = t5 + t6;
-        let t15 = c2_arm * joint_accelerations[0];
-        let t16 = t15 - t9;
-        let t20 = t8 * t8;
-        let t21 = t4 * t4;
-        let t25 = joint_velocities[1] * joint_velocities[1];
-        let t31 = t12 - joint_accelerations[1];
-        let t34 = 9.81 * c2_arm;
-        let t35 = 9.81 * s2_arm;
-        let t39 = s2_arm * c3_arm;
-        let t45 = s3_arm * t8 + c3_arm * joint_velocities[1];
-        let t47 = c3_arm * t6 - s3_arm * joint_accelerations[1]
-            - joint_velocities[2] * t45;
-        let t49 = s2_arm * s3_arm;
-        let t52 = c3_arm * t8 - s3_arm * joint_velocities[1];
-        let t53 = t4 + joint_velocities[2];
-        let t54 = t52 * t53;
-        let t55 = t49 * t54;
-        let t57 = t52 * t45;
-        let t61 = c3_arm * t54;
-        let t63 = t52 * t52;
-        let t64 = t45 * t45;
+        let t3 = c2_arm * joint_velocities[0];
+        let t4 = joint_velocities[1] * t3;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t6 = t5 + t4;
+        let t7 = t4 + t6;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t14 = t13 - t12;
+        let t18 = t9 * t9;
+        let t19 = t3 * t3;
+        let t23 = joint_velocities[1] * joint_velocities[1];
+        let t29 = t10 - joint_accelerations[1];
+        let t32 = 9.81 * c2_arm;
+        let t33 = 9.81 * s2_arm;
+        let t37 = s2_arm * c3_arm;
+        let t43 = s3_arm * t9 + c3_arm * joint_velocities[1];
+        let t45 = c3_arm * t6 - s3_arm * joint_accelerations[1]
+            - joint_velocities[2] * t43;
+        let t47 = s2_arm * s3_arm;
+        let t50 = c3_arm * t9 - s3_arm * joint_velocities[1];
+        let t51 = t3 + joint_velocities[2];
+        let t52 = t50 * t51;
+        let t53 = t47 * t52;
+        let t55 = t50 * t43;
+        let t58 = t9 * t51;
+        let t59 = t43 * t51;
+        let t60 = t45 - t59;
+        let t63 = t50 * t50;
+        let t64 = t43 * t43;
         let t65 = t63 - t64;
         let t71 = s3_arm * t6 + c3_arm * joint_accelerations[1]
-            + joint_velocities[2] * t52;
-        let t72 = t54 + t71;
-        let t74 = t45 * t53;
-        let t75 = t47 - t74;
-        let t82 = t16 + joint_accelerations[2];
-        let t83 = t82 - t57;
-        let t85 = t53 * t53;
-        let t86 = t85 - t63;
-        let t89 = t74 + t47;
-        let t91 = t39 * t83 - t49 * t86 + c2_arm * t89;
-        let t92 = s3_arm * t83;
-        let t95 = t64 - t85;
-        let t97 = t57 + t82;
-        let t100 = t54 - t71;
-        let t102 = t39 * t95 - t49 * t97 + c2_arm * t100;
-        let t104 = c3_arm * t97;
-        let t113 = 0.4 * c3_arm;
-        let t120 = t34 - 0.4 * (t20 + t25);
-        let t124 = t35 + 0.4 * t31;
-        let t126 = 0.4 * t13;
-        let t128 = s3_arm * t124 + c3_arm * t126;
-        let t131 = 0.4 * s3_arm;
-        let t139 = c3_arm * t124 - s3_arm * t126;
-        let t145 = t39 * c4_arm - c2_arm * s4_arm;
-        let t151 = s4_arm * t52 + c4_arm * t53;
-        let t153 = c4_arm * t47 - s4_arm * t82 - joint_velocities[3] * t151;
-        let t157 = t39 * s4_arm + c2_arm * c4_arm;
-        let t160 = c4_arm * t52 - s4_arm * t53;
-        let t161 = joint_velocities[3] - t45;
-        let t162 = t160 * t161;
-        let t163 = t157 * t162;
-        let t165 = t160 * t151;
-        let t168 = s3_arm * s4_arm;
-        let t169 = t168 * t162;
-        let t170 = s3_arm * c4_arm;
-        let t176 = c4_arm * t162;
-        let t182 = s4_arm * t47 + c4_arm * t82 + joint_velocities[3] * t160;
-        let t183 = t162 + t182;
-        let t185 = t151 * t161;
-        let t186 = t153 - t185;
-        let t189 = t160 * t160;
-        let t190 = t151 * t151;
-        let t191 = t189 - t190;
-        let t202 = joint_accelerations[3] - t71;
-        let t203 = t202 - t165;
-        let t205 = t161 * t161;
-        let t206 = t205 - t189;
-        let t209 = t185 + t153;
-        let t220 = t190 - t205;
-        let t222 = t165 + t202;
-        let t225 = t162 - t182;
-        let t246 = 0.4 * t49;
-        let t247 = c4_arm * t246;
-        let t248 = t190 + t205;
-        let t250 = s4_arm * t246;
-        let t253 = 0.4 * t39;
-        let t258 = s4_arm * t139 + c4_arm * t120;
-        let t263 = c4_arm * t113;
-        let t265 = s4_arm * t113;
-        let t276 = t189 + t205;
-        let t283 = c4_arm * t139 - s4_arm * t120;
-        let t303 = t145 * c5_arm - t49 * s5_arm;
-        let t309 = c5_arm * t161 - s5_arm * t160;
-        let t311 = c5_arm * t153 + s5_arm * t202 + joint_velocities[4] * t309;
-        let t315 = t145 * s5_arm + t49 * c5_arm;
-        let t318 = c5_arm * t160 + s5_arm * t161;
-        let t319 = t151 + joint_velocities[4];
-        let t320 = t318 * t319;
-        let t321 = t315 * t320;
-        let t323 = t318 * t309;
-        let t328 = s5_arm * t170 - c3_arm * c5_arm;
-        let t329 = t328 * t320;
-        let t332 = c5_arm * t170 + c3_arm * s5_arm;
-        let t337 = 0.39 * s4_arm;
-        let t338 = s5_arm * t337;
-        let t339 = 2.5641025641025643 * t338;
-        let t340 = t339 * t320;
-        let t341 = c5_arm * t337;
-        let t342 = 2.5641025641025643 * t341;
-        let t348 = c5_arm * t320;
-        let t350 = t318 * t318;
-        let t351 = t309 * t309;
-        let t352 = t350 - t351;
-        let t358 = c5_arm * t202 - s5_arm * t153 - joint_velocities[4] * t318;
-        let t359 = t320 - t358;
-        let t361 = t309 * t319;
-        let t362 = t361 + t311;
-        let t379 = t182 + joint_accelerations[4];
-        let t380 = t323 + t379;
-        let t382 = t319 * t319;
-        let t383 = t382 - t350;
-        let t386 = t361 - t311;
-        let t395 = t342 * t380;
-        let t399 = s5_arm * t380;
-        let t402 = t351 - t382;
-        let t404 = t323 - t379;
-        let t407 = t320 + t358;
-        let t417 = t339 * t404;
-        let t421 = c5_arm * t404;
-        let t438 = t247 + 0.39 * t49;
-        let t441 = t253 + 0.39 * t145;
-        let t443 = c5_arm * t438 + s5_arm * t441;
-        let t444 = t351 + t382;
-        let t448 = s5_arm * t438 - c5_arm * t441;
-        let t454 = 0.39 * t276 - t258;
-        let t457 = t283 + 0.39 * t222;
-        let t460 = t128 + 0.39 * t186;
-        let t462 = s5_arm * t457 + c5_arm * t460;
-        let t467 = t263 + 0.39 * c3_arm;
-        let t470 = t131 + 0.39 * t170;
-        let t472 = s5_arm * t467 + c5_arm * t470;
-        let t476 = s5_arm * t470 - c5_arm * t467;
-        let t493 = 0.39 * c5_arm;
-        let t499 = t350 + t382;
-        let t507 = c5_arm * t457 - s5_arm * t460;
-        let t528 = 0.39 * s5_arm;
-        let t538 = t303 * c6_arm + t157 * s6_arm;
-        let t544 = c6_arm * t319 - s6_arm * t318;
-        let t546 = c6_arm * t311 + s6_arm * t379 + joint_velocities[5] * t544;
-        let t550 = t157 * c6_arm - t303 * s6_arm;
-        let t553 = c6_arm * t318 + s6_arm * t319;
-        let t554 = joint_velocities[5] - t309;
-        let t555 = t553 * t554;
-        let t556 = t550 * t555;
-        let t558 = t553 * t544;
-        let t563 = s6_arm * t332 - c6_arm * t168;
-        let t564 = t563 * t555;
-        let t567 = c6_arm * t332 + s6_arm * t168;
-        let t574 = c4_arm * s6_arm - c6_arm * t342;
-        let t578 = s6_arm * t342 + c4_arm * c6_arm;
-        let t579 = t578 * t555;
-        let t583 = s5_arm * c6_arm;
-        let t585 = s5_arm * s6_arm;
-        let t586 = t585 * t555;
-        let t591 = c6_arm * t555;
-        let t593 = t544 * t554;
-        let t594 = t593 + t546;
-        let t600 = c6_arm * t379 - s6_arm * t311 - joint_velocities[5] * t553;
-        let t601 = t555 - t600;
-        let t604 = t553 * t553;
-        let t605 = t544 * t544;
-        let t606 = t604 - t605;
-        let t627 = joint_accelerations[5] - t358;
-        let t628 = t558 + t627;
-        let t630 = t554 * t554;
-        let t631 = t630 - t604;
-        let t634 = t593 - t546;
-        let t655 = t605 - t630;
-        let t657 = t558 - t627;
-        let t660 = t555 + t600;
-        let t701 = c6_arm * t443 + s6_arm * t250;
-        let t702 = t605 + t630;
-        let t706 = s6_arm * t443 - c6_arm * t250;
-        let t714 = s6_arm * t507 + c6_arm * t454;
-        let t723 = c6_arm * t476 - s6_arm * t265;
-        let t727 = s6_arm * t476 + c6_arm * t265;
-        let t736 = c6_arm * t338;
-        let t738 = s6_arm * t338;
-        let t745 = c6_arm * t493;
-        let t747 = s6_arm * t493;
-        let t759 = c6_arm * t507 - s6_arm * t454;
-        let t763 = t604 + t630;
-        let t802 = t538 * c7_arm - t315 * s7_arm;
-        let t808 = s7_arm * t553 + c7_arm * t554;
-        let t810 = c7_arm * t546 - s7_arm * t627 - joint_velocities[6] * t808;
-        let t814 = t538 * s7_arm + t315 * c7_arm;
-        let t817 = c7_arm * t553 - s7_arm * t554;
-        let t818 = t544 + joint_velocities[6];
-        let t819 = t817 * t818;
-        let t820 = t814 * t819;
-        let t822 = t817 * t808;
-        let t827 = s7_arm * t328 - c7_arm * t567;
-        let t831 = s7_arm * t567 + c7_arm * t328;
-        let t832 = t831 * t819;
-        let t838 = c7_arm * t574 + s7_arm * t339;
-        let t842 = c7_arm * t339 - s7_arm * t574;
-        let t843 = t842 * t819;
-        let t849 = c7_arm * t583 + c5_arm * s7_arm;
-        let t853 = c5_arm * c7_arm - s7_arm * t583;
-        let t854 = t853 * t819;
-        let t858 = s6_arm * c7_arm;
-        let t860 = s6_arm * s7_arm;
-        let t861 = t860 * t819;
-        let t866 = c7_arm * t819;
-        let t868 = t817 * t817;
-        let t869 = t808 * t808;
-        let t870 = t868 - t869;
-        let t876 = s7_arm * t546 + c7_arm * t627 + joint_velocities[6] * t817;
-        let t877 = t819 + t876;
-        let t879 = t808 * t818;
-        let t880 = t810 - t879;
-        let t907 = t600 + joint_accelerations[6];
-        let t908 = t907 - t822;
-        let t910 = t818 * t818;
-        let t911 = t910 - t868;
-        let t914 = t879 + t810;
-        let t940 = t869 - t910;
-        let t942 = t822 + t907;
-        let t945 = t819 - t876;
-        let t995 = s7_arm * t701 + c7_arm * t448;
-        let t999 = s7_arm * t448 - c7_arm * t701;
-        let t1000 = t869 + t910;
-        let t1008 = s7_arm * t759 + c7_arm * t462;
-        let t1014 = c7_arm * t472 - s7_arm * t723;
-        let t1018 = c7_arm * t723 + s7_arm * t472;
-        let t1029 = c7_arm * t341 - s7_arm * t736;
-        let t1033 = c7_arm * t736 + s7_arm * t341;
-        let t1047 = c7_arm * t745 - s7_arm * t528;
-        let t1051 = s7_arm * t745 + c7_arm * t528;
-        let t1063 = t868 + t910;
-        let t1070 = c7_arm * t759 - s7_arm * t462;
+            + joint_velocities[2] * t50;
+        let t72 = t52 + t71;
+        let t80 = t14 + joint_accelerations[2];
+        let t81 = t80 - t55;
+        let t83 = t51 * t51;
+        let t84 = t83 - t63;
+        let t87 = t59 + t45;
+        let t89 = t37 * t81 - t47 * t84 + c2_arm * t87;
+        let t90 = s3_arm * t81;
+        let t93 = t64 - t83;
+        let t95 = t55 + t80;
+        let t98 = t52 - t71;
+        let t100 = t37 * t93 - t47 * t95 + c2_arm * t98;
+        let t102 = c3_arm * t95;
+        let t109 = 0.4 * c3_arm;
+        let t116 = t32 - 0.4 * (t18 + t23);
+        let t120 = t33 + 0.4 * t29;
+        let t122 = 0.4 * t7;
+        let t124 = s3_arm * t120 + c3_arm * t122;
+        let t127 = 0.4 * s3_arm;
+        let t135 = c3_arm * t120 - s3_arm * t122;
+        let t141 = t37 * c4_arm - c2_arm * s4_arm;
+        let t147 = s4_arm * t50 + c4_arm * t51;
+        let t149 = c4_arm * t45 - s4_arm * t80 - joint_velocities[3] * t147;
+        let t153 = t37 * s4_arm + c2_arm * c4_arm;
+        let t156 = c4_arm * t50 - s4_arm * t51;
+        let t157 = joint_velocities[3] - t43;
+        let t158 = t156 * t157;
+        let t159 = t153 * t158;
+        let t161 = t156 * t147;
+        let t164 = s3_arm * s4_arm;
+        let t165 = t164 * t158;
+        let t166 = s3_arm * c4_arm;
+        let t171 = t50 * t157;
+        let t172 = t147 * t157;
+        let t173 = t149 - t172;
+        let t180 = s4_arm * t45 + c4_arm * t80 + joint_velocities[3] * t156;
+        let t181 = t158 + t180;
+        let t185 = t156 * t156;
+        let t186 = t147 * t147;
+        let t187 = t185 - t186;
+        let t198 = joint_accelerations[3] - t71;
+        let t199 = t198 - t161;
+        let t201 = t157 * t157;
+        let t202 = t201 - t185;
+        let t205 = t172 + t149;
+        let t216 = t186 - t201;
+        let t218 = t161 + t198;
+        let t221 = t158 - t180;
+        let t240 = 0.4 * t47;
+        let t241 = c4_arm * t240;
+        let t242 = t186 + t201;
+        let t244 = s4_arm * t240;
+        let t247 = 0.4 * t37;
+        let t252 = s4_arm * t135 + c4_arm * t116;
+        let t257 = c4_arm * t109;
+        let t259 = s4_arm * t109;
+        let t270 = t185 + t201;
+        let t277 = c4_arm * t135 - s4_arm * t116;
+        let t297 = t141 * c5_arm - t47 * s5_arm;
+        let t303 = c5_arm * t157 - s5_arm * t156;
+        let t305 = c5_arm * t149 + s5_arm * t198 + joint_velocities[4] * t303;
+        let t309 = t141 * s5_arm + t47 * c5_arm;
+        let t312 = c5_arm * t156 + s5_arm * t157;
+        let t313 = t147 + joint_velocities[4];
+        let t314 = t312 * t313;
+        let t315 = t309 * t314;
+        let t317 = t312 * t303;
+        let t322 = s5_arm * t166 - c3_arm * c5_arm;
+        let t323 = t322 * t314;
+        let t326 = c5_arm * t166 + c3_arm * s5_arm;
+        let t331 = 0.39 * s4_arm;
+        let t332 = s5_arm * t331;
+        let t333 = 2.5641025641025643 * t332;
+        let t334 = t333 * t314;
+        let t335 = c5_arm * t331;
+        let t336 = 2.5641025641025643 * t335;
+        let t341 = t156 * t313;
+        let t342 = t303 * t313;
+        let t343 = t342 + t305;
+        let t346 = t312 * t312;
+        let t347 = t303 * t303;
+        let t348 = t346 - t347;
+        let t354 = c5_arm * t198 - s5_arm * t149 - joint_velocities[4] * t312;
+        let t355 = t314 - t354;
+        let t373 = t180 + joint_accelerations[4];
+        let t374 = t317 + t373;
+        let t376 = t313 * t313;
+        let t377 = t376 - t346;
+        let t380 = t342 - t305;
+        let t389 = t336 * t374;
+        let t393 = s5_arm * t374;
+        let t396 = t347 - t376;
+        let t398 = t317 - t373;
+        let t401 = t314 + t354;
+        let t411 = t333 * t398;
+        let t415 = c5_arm * t398;
+        let t430 = t241 + 0.39 * t47;
+        let t433 = t247 + 0.39 * t141;
+        let t435 = c5_arm * t430 + s5_arm * t433;
+        let t436 = t347 + t376;
+        let t440 = s5_arm * t430 - c5_arm * t433;
+        let t446 = 0.39 * t270 - t252;
+        let t449 = t277 + 0.39 * t218;
+        let t452 = t124 + 0.39 * t173;
+        let t454 = s5_arm * t449 + c5_arm * t452;
+        let t459 = t257 + 0.39 * c3_arm;
+        let t462 = t127 + 0.39 * t166;
+        let t464 = s5_arm * t459 + c5_arm * t462;
+        let t468 = s5_arm * t462 - c5_arm * t459;
+        let t485 = 0.39 * c5_arm;
+        let t491 = t346 + t376;
+        let t499 = c5_arm * t449 - s5_arm * t452;
+        let t520 = 0.39 * s5_arm;
+        let t530 = t297 * c6_arm + t153 * s6_arm;
+        let t536 = c6_arm * t313 - s6_arm * t312;
+        let t538 = c6_arm * t305 + s6_arm * t373 + joint_velocities[5] * t536;
+        let t542 = t153 * c6_arm - t297 * s6_arm;
+        let t545 = c6_arm * t312 + s6_arm * t313;
+        let t546 = joint_velocities[5] - t303;
+        let t547 = t545 * t546;
+        let t548 = t542 * t547;
+        let t550 = t545 * t536;
+        let t555 = s6_arm * t326 - c6_arm * t164;
+        let t556 = t555 * t547;
+        let t559 = c6_arm * t326 + s6_arm * t164;
+        let t566 = c4_arm * s6_arm - c6_arm * t336;
+        let t570 = s6_arm * t336 + c4_arm * c6_arm;
+        let t571 = t570 * t547;
+        let t575 = s5_arm * c6_arm;
+        let t577 = s5_arm * s6_arm;
+        let t578 = t577 * t547;
+        let t582 = t312 * t546;
+        let t583 = t536 * t546;
+        let t584 = t583 + t538;
+        let t592 = c6_arm * t373 - s6_arm * t305 - joint_velocities[5] * t545;
+        let t593 = t547 - t592;
+        let t596 = t545 * t545;
+        let t597 = t536 * t536;
+        let t598 = t596 - t597;
+        let t619 = joint_accelerations[5] - t354;
+        let t620 = t550 + t619;
+        let t622 = t546 * t546;
+        let t623 = t622 - t596;
+        let t626 = t583 - t538;
+        let t647 = t597 - t622;
+        let t649 = t550 - t619;
+        let t652 = t547 + t592;
+        let t691 = c6_arm * t435 + s6_arm * t244;
+        let t692 = t597 + t622;
+        let t696 = s6_arm * t435 - c6_arm * t244;
+        let t704 = s6_arm * t499 + c6_arm * t446;
+        let t713 = c6_arm * t468 - s6_arm * t259;
+        let t717 = s6_arm * t468 + c6_arm * t259;
+        let t726 = c6_arm * t332;
+        let t728 = s6_arm * t332;
+        let t735 = c6_arm * t485;
+        let t737 = s6_arm * t485;
+        let t749 = c6_arm * t499 - s6_arm * t446;
+        let t753 = t596 + t622;
+        let t792 = t530 * c7_arm - t309 * s7_arm;
+        let t798 = s7_arm * t545 + c7_arm * t546;
+        let t800 = c7_arm * t538 - s7_arm * t619 - joint_velocities[6] * t798;
+        let t804 = t530 * s7_arm + t309 * c7_arm;
+        let t807 = c7_arm * t545 - s7_arm * t546;
+        let t808 = t536 + joint_velocities[6];
+        let t809 = t807 * t808;
+        let t810 = t804 * t809;
+        let t812 = t807 * t798;
+        let t817 = s7_arm * t322 - c7_arm * t559;
+        let t821 = s7_arm * t559 + c7_arm * t322;
+        let t822 = t821 * t809;
+        let t828 = c7_arm * t566 + s7_arm * t333;
+        let t832 = c7_arm * t333 - s7_arm * t566;
+        let t833 = t832 * t809;
+        let t839 = c7_arm * t575 + c5_arm * s7_arm;
+        let t843 = c5_arm * c7_arm - s7_arm * t575;
+        let t844 = t843 * t809;
+        let t848 = s6_arm * c7_arm;
+        let t850 = s6_arm * s7_arm;
+        let t851 = t850 * t809;
+        let t855 = t545 * t808;
+        let t856 = t798 * t808;
+        let t857 = t800 - t856;
+        let t860 = t807 * t807;
+        let t861 = t798 * t798;
+        let t862 = t860 - t861;
+        let t868 = s7_arm * t538 + c7_arm * t619 + joint_velocities[6] * t807;
+        let t869 = t809 + t868;
+        let t897 = t592 + joint_accelerations[6];
+        let t898 = t897 - t812;
+        let t900 = t808 * t808;
+        let t901 = t900 - t860;
+        let t904 = t856 + t800;
+        let t930 = t861 - t900;
+        let t932 = t812 + t897;
+        let t935 = t809 - t868;
+        let t983 = s7_arm * t691 + c7_arm * t440;
+        let t987 = s7_arm * t440 - c7_arm * t691;
+        let t988 = t861 + t900;
+        let t996 = s7_arm * t749 + c7_arm * t454;
+        let t1002 = c7_arm * t464 - s7_arm * t713;
+        let t1006 = c7_arm * t713 + s7_arm * t464;
+        let t1015 = t331 * t843;
+        let t1017 = t331 * t839;
+        let t1031 = c7_arm * t735 - s7_arm * t520;
+        let t1035 = s7_arm * t735 + c7_arm * t520;
+        let t1047 = t860 + t900;
+        let t1054 = c7_arm * t749 - s7_arm * t454;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t6 + c2_arm * t9,
-                c2_arm * t13 - s2_arm * (t9 - t16),
-                s2_arm * (t12 + joint_accelerations[1]) + c2_arm * (t25 - t20),
-                s2_arm * (t21 - t25) - c2_arm * t31, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t39 * t47 - t55 + c2_arm * t57, c2_arm * t65 - (t39 * t72 + t49 * t75), t91, t102,
-                t55 - t39 * t74 + c2_arm * t82, -(0.4 * t91), -(0.4 * t102), 0.0, 0.0, 0.0, 0.0,
-                t145 * t153 - t163 - t49 * t165, -(t145 * t183 + t157 * t186 + t49 * t191),
-                t145 * t203 - t157 * t206 - t49 * t209, t145 * t220 - t157 * t222 - t49 * t225,
-                t163 - t145 * t185 - t49 * t202,
-                t247 * t248 + t250 * t203 - t253 * t183 + t49 * t258 - t157 * t128,
-                t247 * t222 - t250 * t276 - t253 * t186 + t49 * t283 - t145 * t128, 0.0, 0.0, 0.0,
-                0.0, t303 * t311 - t321 - t157 * t323, t157 * t352 - (t303 * t359 + t315 * t362),
-                t303 * t380 - t315 * t383 - t157 * t386, t303 * t402 + t315 * t404 + t157 * t407,
-                t303 * t361 + t321 + t157 * t379,
-                t443 * t444 + t448 * t380 - t250 * t359 - (t315 * t454 + t157 * t462),
-                -(t443 * t404 + t448 * t499 + t250 * t362 + t303 * t454 + t157 * t507), 0.0, 0.0,
-                0.0, 0.0, t538 * t546 + t556 - t315 * t558, t550 * t594 - t538 * t601 + t315 * t606,
-                t538 * t628 + t550 * t631 - t315 * t634, t538 * t655 - t550 * t657 + t315 * t660,
-                t538 * t593 - t556 + t315 * t627,
-                t701 * t702 + t706 * t628 - t448 * t601 - (t550 * t462 + t315 * t714),
-                t538 * t462 - t315 * t759 - (t701 * t657 + t706 * t763 + t448 * t594), 0.0, 0.0,
-                0.0, 0.0, t802 * t810 - t820 + t550 * t822,
-                t550 * t870 - (t802 * t877 + t814 * t880), t802 * t908 - t814 * t911 + t550 * t914,
-                t802 * t940 - t814 * t942 + t550 * t945, t820 - t802 * t879 + t550 * t907,
-                t995 * t908 - t999 * t1000 + t706 * t877 - (t814 * t714 + t550 * t1008),
-                t706 * t880 - (t999 * t942 + t995 * t1063)
-                    - (t802 * t714 + t550 * t1070),
+                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t7,
+                c2_arm * t7 - s2_arm * (t12 - t14),
+                s2_arm * (t10 + joint_accelerations[1]) + c2_arm * (t23 - t18),
+                s2_arm * (t19 - t23) - c2_arm * t29, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                t37 * t45 - t53 + c2_arm * t55, c2_arm * t65 - (t37 * t72 + t47 * t60), t89, t100,
+                t53 - t37 * t59 + c2_arm * t80, -(0.4 * t89), -(0.4 * t100), 0.0, 0.0, 0.0, 0.0,
+                t141 * t149 - t159 - t47 * t161, -(t141 * t181 + t153 * t173 + t47 * t187),
+                t141 * t199 - t153 * t202 - t47 * t205, t141 * t216 - t153 * t218 - t47 * t221,
+                t159 - t141 * t172 - t47 * t198,
+                t241 * t242 + t244 * t199 - t247 * t181 + t47 * t252 - t153 * t124,
+                t241 * t218 - t244 * t270 - t247 * t173 + t47 * t277 - t141 * t124, 0.0, 0.0, 0.0,
+                0.0, t297 * t305 - t315 - t153 * t317, t153 * t348 - (t297 * t355 + t309 * t343),
+                t297 * t374 - t309 * t377 - t153 * t380, t297 * t396 + t309 * t398 + t153 * t401,
+                t297 * t342 + t315 + t153 * t373,
+                t435 * t436 + t440 * t374 - t244 * t355 - (t309 * t446 + t153 * t454),
+                -(t435 * t398 + t440 * t491 + t244 * t343 + t297 * t446 + t153 * t499), 0.0, 0.0,
+                0.0, 0.0, t530 * t538 + t548 - t309 * t550, t542 * t584 - t530 * t593 + t309 * t598,
+                t530 * t620 + t542 * t623 - t309 * t626, t530 * t647 - t542 * t649 + t309 * t652,
+                t530 * t583 - t548 + t309 * t619,
+                t691 * t692 + t696 * t620 - t440 * t593 - (t542 * t454 + t309 * t704),
+                t530 * t454 - t309 * t749 - (t691 * t649 + t696 * t753 + t440 * t584), 0.0, 0.0,
+                0.0, 0.0, t792 * t800 - t810 + t542 * t812,
+                t542 * t862 - (t792 * t869 + t804 * t857), t792 * t898 - t804 * t901 + t542 * t904,
+                t792 * t930 - t804 * t932 + t542 * t935, t810 - t792 * t856 + t542 * t897,
+                t983 * t898 - t987 * t988 + t696 * t869 - (t804 * t704 + t542 * t996),
+                t696 * t857 - (t987 * t932 + t983 * t1047)
+                    - (t792 * t704 + t542 * t1054),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, -t12, t20 - t21, t3, t15, joint_accelerations[1], t34, -t35,
+                0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t13, joint_accelerations[1], t32, -t33,
                 joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0,
-                -(s3_arm * t47 + t61), s3_arm * t72 - c3_arm * t75, -(t92 + c3_arm * t86),
-                -(s3_arm * t95 + t104), s3_arm * t74 + t61,
-                t113 * (t64 + t85) + 0.4 * t92 + c3_arm * t120,
-                0.4 * t104 - t131 * (t63 + t85) - s3_arm * t120, 0.0, 0.0, 0.0, 0.0,
-                t169 - t153 * t170 - c3_arm * t165, t170 * t183 + t168 * t186 - c3_arm * t191,
-                t168 * t206 - t170 * t203 - c3_arm * t209,
-                t168 * t222 - t170 * t220 - c3_arm * t225, t170 * t185 - t169 - c3_arm * t202,
-                t263 * t248 + t265 * t203 + t131 * t183 + t128 * t168 + c3_arm * t258,
-                t263 * t222 - t265 * t276 + t131 * t186 + t128 * t170 + c3_arm * t283, 0.0, 0.0,
-                0.0, 0.0, t329 - t311 * t332 + t168 * t323, t332 * t359 + t328 * t362 - t168 * t352,
-                t328 * t383 - t332 * t380 + t168 * t386, -(t332 * t402 + t328 * t404 + t168 * t407),
-                -(t332 * t361 + t329 + t168 * t379),
-                t472 * t380 - t476 * t444 - t265 * t359 + t454 * t328 + t168 * t462,
-                t476 * t404 - t472 * t499 - t265 * t362 + t454 * t332 + t168 * t507, 0.0, 0.0, 0.0,
-                0.0, t564 - t546 * t567 + t328 * t558, t567 * t601 + t563 * t594 - t328 * t606,
-                t563 * t631 - t567 * t628 + t328 * t634, -(t567 * t655 + t563 * t657 + t328 * t660),
-                -(t567 * t593 + t564 + t328 * t627),
-                t328 * t714 - t462 * t563 - (t723 * t702 + t727 * t628 + t472 * t601),
-                t723 * t657 + t727 * t763 - t472 * t594 + t328 * t759 - t462 * t567, 0.0, 0.0, 0.0,
-                0.0, t810 * t827 + t832 + t563 * t822, t831 * t880 - t827 * t877 + t563 * t870,
-                t827 * t908 + t831 * t911 + t563 * t914, t827 * t940 + t831 * t942 + t563 * t945,
-                t563 * t907 - (t827 * t879 + t832),
-                t1014 * t908 - t1018 * t1000 - t727 * t877 + t714 * t831 - t563 * t1008,
-                -(t1018 * t942 + t1014 * t1063 + t727 * t880 + t714 * t827
-                    + t563 * t1070),
+                -(t58 + s3_arm * t60), s3_arm * t72 - c3_arm * t60, -(t90 + c3_arm * t84),
+                -(s3_arm * t93 + t102), t58, t109 * (t64 + t83) + 0.4 * t90 + c3_arm * t116,
+                0.4 * t102 - t127 * (t63 + t83) - s3_arm * t116, 0.0, 0.0, 0.0, 0.0,
+                t165 - t149 * t166 - c3_arm * t161, t166 * t181 + t164 * t173 - c3_arm * t187,
+                t164 * t202 - t166 * t199 - c3_arm * t205,
+                t164 * t218 - t166 * t216 - c3_arm * t221, t166 * t172 - t165 - c3_arm * t198,
+                t257 * t242 + t259 * t199 + t127 * t181 + t124 * t164 + c3_arm * t252,
+                t257 * t218 - t259 * t270 + t127 * t173 + t124 * t166 + c3_arm * t277, 0.0, 0.0,
+                0.0, 0.0, t323 - t305 * t326 + t164 * t317, t326 * t355 + t322 * t343 - t164 * t348,
+                t322 * t377 - t326 * t374 + t164 * t380, -(t326 * t396 + t322 * t398 + t164 * t401),
+                -(t326 * t342 + t323 + t164 * t373),
+                t464 * t374 - t468 * t436 - t259 * t355 + t446 * t322 + t164 * t454,
+                t468 * t398 - t464 * t491 - t259 * t343 + t446 * t326 + t164 * t499, 0.0, 0.0, 0.0,
+                0.0, t556 - t538 * t559 + t322 * t550, t559 * t593 + t555 * t584 - t322 * t598,
+                t555 * t623 - t559 * t620 + t322 * t626, -(t559 * t647 + t555 * t649 + t322 * t652),
+                -(t559 * t583 + t556 + t322 * t619),
+                t322 * t704 - t454 * t555 - (t713 * t692 + t717 * t620 + t464 * t593),
+                t713 * t649 + t717 * t753 - t464 * t584 + t322 * t749 - t454 * t559, 0.0, 0.0, 0.0,
+                0.0, t800 * t817 + t822 + t555 * t812, t821 * t857 - t817 * t869 + t555 * t862,
+                t817 * t898 + t821 * t901 + t555 * t904, t817 * t930 + t821 * t932 + t555 * t935,
+                t555 * t897 - (t817 * t856 + t822),
+                t1002 * t898 - t1006 * t988 - t717 * t869 + t704 * t821 - t555 * t996,
+                -(t1006 * t932 + t1002 * t1047 + t717 * t857 + t704 * t817
+                    + t555 * t1054),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t57, t65, t89,
-                t100, t82, -t128, -t139, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, -(s4_arm * t153 + t176),
-                s4_arm * t183 - c4_arm * t186, -(s4_arm * t203 + c4_arm * t206),
-                -(s4_arm * t220 + c4_arm * t222), s4_arm * t185 + t176, -(c4_arm * t128),
-                s4_arm * t128, 0.0, 0.0, 0.0, 0.0, t340 - t311 * t342 - c4_arm * t323,
-                t342 * t359 + t339 * t362 + c4_arm * t352, t339 * t383 - t395 - c4_arm * t386,
-                c4_arm * t407 - (t342 * t402 + t417), c4_arm * t379 - (t342 * t361 + t340),
-                0.39 * t395 - t338 * t444 + t454 * t339 - c4_arm * t462,
-                0.39 * t417 - t341 * t499 + t454 * t342 - c4_arm * t507, 0.0, 0.0, 0.0, 0.0,
-                t546 * t574 + t579 + t339 * t558, t578 * t594 - t574 * t601 - t339 * t606,
-                t574 * t628 + t578 * t631 + t339 * t634, t574 * t655 - t578 * t657 - t339 * t660,
-                t574 * t593 - t579 - t339 * t627,
-                t339 * t714 - t462 * t578 - (t736 * t702 + t738 * t628 + t341 * t601),
-                t736 * t657 + t738 * t763 - t341 * t594 + t462 * t574 + t339 * t759, 0.0, 0.0, 0.0,
-                0.0, t810 * t838 + t843 + t578 * t822, t842 * t880 - t838 * t877 + t578 * t870,
-                t838 * t908 + t842 * t911 + t578 * t914, t838 * t940 + t842 * t942 + t578 * t945,
-                t578 * t907 - (t838 * t879 + t843),
-                t1029 * t908 - t1033 * t1000 - t738 * t877 + t714 * t842 - t578 * t1008,
-                -(t1033 * t942 + t1029 * t1063 + t738 * t880 + t714 * t838
-                    + t578 * t1070),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t65, t87,
+                t98, t80, -t124, -t135, joint_accelerations[2], joint_velocities[2],
+                ::overact::math::sign(joint_velocities[2]), 1.0, -(t171 + s4_arm * t173),
+                s4_arm * t181 - c4_arm * t173, -(s4_arm * t199 + c4_arm * t202),
+                -(s4_arm * t216 + c4_arm * t218), t171, -(c4_arm * t124), s4_arm * t124, 0.0, 0.0,
+                0.0, 0.0, t334 - t305 * t336 - c4_arm * t317,
+                t336 * t355 + t333 * t343 + c4_arm * t348, t333 * t377 - t389 - c4_arm * t380,
+                c4_arm * t401 - (t336 * t396 + t411), c4_arm * t373 - (t336 * t342 + t334),
+                0.39 * t389 - t332 * t436 + t446 * t333 - c4_arm * t454,
+                0.39 * t411 - t335 * t491 + t446 * t336 - c4_arm * t499, 0.0, 0.0, 0.0, 0.0,
+                t538 * t566 + t571 + t333 * t550, t570 * t584 - t566 * t593 - t333 * t598,
+                t566 * t620 + t570 * t623 + t333 * t626, t566 * t647 - t570 * t649 - t333 * t652,
+                t566 * t583 - t571 - t333 * t619,
+                t333 * t704 - t454 * t570 - (t726 * t692 + t728 * t620 + t335 * t593),
+                t726 * t649 + t728 * t753 - t335 * t584 + t454 * t566 + t333 * t749, 0.0, 0.0, 0.0,
+                0.0, t800 * t828 + t833 + t570 * t812, t832 * t857 - t828 * t869 + t570 * t862,
+                t828 * t898 + t832 * t901 + t570 * t904, t828 * t930 + t832 * t932 + t570 * t935,
+                t570 * t897 - (t828 * t856 + t833),
+                t1015 * t898 - t1017 * t988 - t728 * t869 + t704 * t832 - t570 * t996,
+                -(t1017 * t932 + t1015 * t1047 + t728 * t857 + t704 * t828
+                    + t570 * t1054),
                 0.0,
                 0.0,
                 0.0,
@@ -1215,57 +1220,52 @@ impl KukaLwr {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t165, t191, t209, t225, t202, -t258, -t283,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t161, t187, t205, t221, t198, -t252, -t277,
                 joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, s5_arm * t311 + t348,
-                c5_arm * t362 - s5_arm * t359, t399 + c5_arm * t383, s5_arm * t402 - t421,
-                s5_arm * t361 - t348, c5_arm * t454 - (t493 * t444 + 0.39 * t399),
-                0.39 * t421 + t528 * t499 - s5_arm * t454, 0.0, 0.0, 0.0, 0.0,
-                t546 * t583 - t586 + c5_arm * t558, -(t583 * t601 + t585 * t594 + c5_arm * t606),
-                t583 * t628 - t585 * t631 + c5_arm * t634,
-                t583 * t655 + t585 * t657 - c5_arm * t660, t583 * t593 + t586 - c5_arm * t627,
-                t528 * t601 - (t745 * t702 + t747 * t628) + t462 * t585 + c5_arm * t714,
-                t745 * t657 + t747 * t763 + t528 * t594 + t462 * t583 + c5_arm * t759, 0.0, 0.0,
-                0.0, 0.0, t810 * t849 + t854 - t585 * t822, t853 * t880 - t849 * t877 - t585 * t870,
-                t849 * t908 + t853 * t911 - t585 * t914, t849 * t940 + t853 * t942 - t585 * t945,
-                -(t849 * t879 + t854 + t585 * t907),
-                t714 * t853 + t585 * t1008
-                    - (t1047 * t1000 + t1051 * t908 + t747 * t877),
-                t1051 * t1063 - t1047 * t942 - t747 * t880 + t585 * t1070 - t714 * t849,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                ::overact::math::sign(joint_velocities[3]), 1.0, t341 + s5_arm * t343,
+                c5_arm * t343 - s5_arm * t355, t393 + c5_arm * t377, s5_arm * t396 - t415, -t341,
+                c5_arm * t446 - (t485 * t436 + 0.39 * t393),
+                0.39 * t415 + t520 * t491 - s5_arm * t446, 0.0, 0.0, 0.0, 0.0,
+                t538 * t575 - t578 + c5_arm * t550, -(t575 * t593 + t577 * t584 + c5_arm * t598),
+                t575 * t620 - t577 * t623 + c5_arm * t626,
+                t575 * t647 + t577 * t649 - c5_arm * t652, t575 * t583 + t578 - c5_arm * t619,
+                t520 * t593 - (t735 * t692 + t737 * t620) + t454 * t577 + c5_arm * t704,
+                t735 * t649 + t737 * t753 + t520 * t584 + t454 * t575 + c5_arm * t749, 0.0, 0.0,
+                0.0, 0.0, t800 * t839 + t844 - t577 * t812, t843 * t857 - t839 * t869 - t577 * t862,
+                t839 * t898 + t843 * t901 - t577 * t904, t839 * t930 + t843 * t932 - t577 * t935,
+                -(t839 * t856 + t844 + t577 * t897),
+                t704 * t843 + t577 * t996 - (t1031 * t988 + t1035 * t898 + t737 * t869),
+                t1035 * t1047 - t1031 * t932 - t737 * t857 + t577 * t1054 - t704 * t839, 0.0, 0.0,
+                0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, -t323, t352, -t386, t407, t379, -t462, -t507, joint_accelerations[4],
+                0.0, 0.0, -t317, t348, -t380, t401, t373, -t454, -t499, joint_accelerations[4],
                 joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                s6_arm * t546 + t591, c6_arm * t594 - s6_arm * t601, s6_arm * t628 + c6_arm * t631,
-                s6_arm * t655 - c6_arm * t657, s6_arm * t593 - t591, -(c6_arm * t462),
-                s6_arm * t462, 0.0, 0.0, 0.0, 0.0, t810 * t858 - t861 + c6_arm * t822,
-                c6_arm * t870 - (t858 * t877 + t860 * t880),
-                t858 * t908 - t860 * t911 + c6_arm * t914,
-                t858 * t940 - t860 * t942 + c6_arm * t945, t861 - t858 * t879 + c6_arm * t907,
-                -(t714 * t860 + c6_arm * t1008), -(t714 * t858 + c6_arm * t1070), 0.0, 0.0, 0.0,
-                0.0,
+                t582 + s6_arm * t584, c6_arm * t584 - s6_arm * t593, s6_arm * t620 + c6_arm * t623,
+                s6_arm * t647 - c6_arm * t649, -t582, -(c6_arm * t454), s6_arm * t454, 0.0, 0.0,
+                0.0, 0.0, t800 * t848 - t851 + c6_arm * t812,
+                c6_arm * t862 - (t848 * t869 + t850 * t857),
+                t848 * t898 - t850 * t901 + c6_arm * t904,
+                t848 * t930 - t850 * t932 + c6_arm * t935, t851 - t848 * t856 + c6_arm * t897,
+                -(t704 * t850 + c6_arm * t996), -(t704 * t848 + c6_arm * t1054), 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t558, t606, -t634,
-                t660, t627, -t714, -t759, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -(s7_arm * t810 + t866),
-                s7_arm * t877 - c7_arm * t880, -(s7_arm * t908 + c7_arm * t911),
-                -(s7_arm * t940 + c7_arm * t942), s7_arm * t879 + t866, -(c7_arm * t714),
-                s7_arm * t714, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t550, t598, -t626,
+                t652, t619, -t704, -t749, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -(t855 + s7_arm * t857),
+                s7_arm * t869 - c7_arm * t857, -(s7_arm * t898 + c7_arm * t901),
+                -(s7_arm * t930 + c7_arm * t932), t855, -(c7_arm * t704), s7_arm * t704, 0.0, 0.0,
+                0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t822, t870, t914, t945, t907, -t1008, -t1070,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t812, t862, t904, t935, t897, -t996, -t1054,
                 joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],
@@ -1296,7 +1296,7 @@ impl KukaLwr {
     ///
     /// Output: 7.
     ///
-    /// 986 operations (453 additions, 533 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 998 intermediates.
+    /// 982 operations (451 additions, 531 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 994 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
         joints: &[f64; 7],
@@ -1617,44 +1617,43 @@ impl KukaLwr {
         let t860 = 2.5641025641025643 * t855;
         let t866 = t851 + t853 * t373 + t855 * t349 + t858 * t427 - t860 * t407
             + c4_arm * t445;
-        let t867 = c6_arm * t853;
         let t869 = s6_arm * t853;
         let t876 = c4_arm * s6_arm - c6_arm * t860;
         let t880 = s6_arm * t860 + c4_arm * c6_arm;
-        let t885 = t867 * t508 - t869 * t484 - t855 * t519 + t876 * t540 + t880 * t560
-            - t858 * t578;
-        let t897 = (c7_arm * t867 + s7_arm * t855) * t617
-            + (c7_arm * t855 - s7_arm * t867) * t641 - t869 * t652;
-        let t908 = (c7_arm * t876 + s7_arm * t858) * t673
+        let t885 = c6_arm * t853 * t508 - t869 * t484 - t855 * t519 + t876 * t540
+            + t880 * t560 - t858 * t578;
+        let t887 = s5_arm * c6_arm;
+        let t890 = c7_arm * t887 + c5_arm * s7_arm;
+        let t895 = c5_arm * c7_arm - s7_arm * t887;
+        let t911 = (c7_arm * t876 + s7_arm * t858) * t673
             + (c7_arm * t858 - s7_arm * t876) * t693 + t880 * t711;
-        let t918 = 0.39 * c5_arm;
-        let t920 = 0.39 * s5_arm;
-        let t927 = t302 + joint_accelerations[3] * parameters[41]
+        let t913 = t866 + t885 + t852 * t890 * t617 + t852 * t895 * t641 - t869 * t652
+            + t911;
+        let t921 = 0.39 * c5_arm;
+        let t923 = 0.39 * s5_arm;
+        let t930 = t302 + joint_accelerations[3] * parameters[41]
             + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + t918 * t373 - t920 * t349 + s5_arm * t407 + c5_arm * t427;
-        let t928 = c6_arm * t918;
-        let t930 = s6_arm * t918;
-        let t935 = s5_arm * c6_arm;
-        let t937 = s5_arm * s6_arm;
-        let t942 = t928 * t508 - t930 * t484 + t920 * t519 + t935 * t540 - t937 * t560
+            + parameters[44] + t921 * t373 - t923 * t349 + s5_arm * t407 + c5_arm * t427;
+        let t931 = c6_arm * t921;
+        let t933 = s6_arm * t921;
+        let t939 = s5_arm * s6_arm;
+        let t944 = t931 * t508 - t933 * t484 + t923 * t519 + t887 * t540 - t939 * t560
             - c5_arm * t578;
-        let t954 = (c7_arm * t928 - s7_arm * t920) * t617
-            - (s7_arm * t928 + c7_arm * t920) * t641 - t930 * t652;
-        let t965 = (c7_arm * t935 + c5_arm * s7_arm) * t673
-            + (c5_arm * c7_arm - s7_arm * t935) * t693 - t937 * t711;
-        let t978 = t445 + joint_accelerations[4] * parameters[55]
+        let t956 = (c7_arm * t931 - s7_arm * t923) * t617
+            - (s7_arm * t931 + c7_arm * t923) * t641 - t933 * t652;
+        let t974 = t445 + joint_accelerations[4] * parameters[55]
             + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
             + parameters[58] + s6_arm * t540 + c6_arm * t560;
-        let t997 = t578 + joint_accelerations[5] * parameters[69]
+        let t993 = t578 + joint_accelerations[5] * parameters[69]
             + joint_velocities[5] * parameters[70]
             + ::overact::math::signed(parameters[71], joint_velocities[5])
             + parameters[72] - (s7_arm * t673 + c7_arm * t693);
         [
-            t177 + t305 + t448 + t581 + t654 + t713, t792 + t815 + t827 + t838,
-            t866 + t885 + t897 + t908, t927 + t942 + t954 + t965,
-            t978 + s6_arm * c7_arm * t673 - s6_arm * s7_arm * t693 + c6_arm * t711, t997,
+            t177 + t305 + t448 + t581 + t654 + t713, t792 + t815 + t827 + t838, t913,
+            t930 + t944 + t956 + t890 * t673 + t895 * t693 - t939 * t711,
+            t974 + s6_arm * c7_arm * t673 - s6_arm * s7_arm * t693 + c6_arm * t711, t993,
             t711 + joint_accelerations[6] * parameters[83]
                 + joint_velocities[6] * parameters[84]
                 + ::overact::math::signed(parameters[85], joint_velocities[6])
@@ -1669,7 +1668,7 @@ impl KukaLwr {
     ///
     /// Output: 7 x 7.
     ///
-    /// 1436 operations (628 additions, 808 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 1420 intermediates.
+    /// 1403 operations (616 additions, 787 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 1387 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 7], parameters: &[f64; 87]) -> [[f64; 7]; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
@@ -1693,394 +1692,381 @@ impl KukaLwr {
                     - t32);
         let t44 = t15 * parameters[19] - t17 * parameters[21] + c2_arm * parameters[22]
             - parameters[23] * t22 + parameters[24] * t31;
-        let t47 = 9.81 * c2_arm;
-        let t62 = t22
-            * (0.1019367991845056 * (parameters[23] * t47) - 2.5 * t23
-                - parameters[26] * t22)
-            - t31
-                * (parameters[26] * t31 + 0.1019367991845056 * (parameters[24] * t47)
-                    + 2.5 * t32);
-        let t67 = s4_arm * t31;
-        let t72 = t15 * c4_arm - c2_arm * s4_arm;
-        let t77 = c4_arm * t31;
-        let t81 = t15 * s4_arm + c2_arm * c4_arm;
-        let t87 = t67
-            * (parameters[40] * t67 - (t17 * parameters[37] + t72 * parameters[39]))
-            + t77 * (parameters[40] * t77 + t81 * parameters[39] - t17 * parameters[38]);
-        let t104 = t72
-            * (t72 * parameters[31] - t81 * parameters[32] - t17 * parameters[33]
-                - parameters[38] * t22 - parameters[39] * t67);
-        let t114 = t81
-            * (t72 * parameters[32] - t81 * parameters[34] - t17 * parameters[35]
-                + parameters[37] * t22 - parameters[39] * t77);
-        let t124 = t72 * parameters[33] - t81 * parameters[35] - t17 * parameters[36]
-            + parameters[37] * t67 + parameters[38] * t77;
-        let t127 = t87
-            - t22 * (t81 * parameters[37] + t72 * parameters[38] - parameters[40] * t22)
-            + t104 - t114 - t17 * t124;
-        let t132 = t77 + 0.39 * t17;
-        let t135 = t22 + 0.39 * t72;
-        let t137 = s5_arm * t132 - c5_arm * t135;
-        let t141 = t72 * c5_arm - t17 * s5_arm;
-        let t149 = c5_arm * t132 + s5_arm * t135;
-        let t152 = t72 * s5_arm + t17 * c5_arm;
-        let t159 = t137
-            * (t81 * parameters[51] - t141 * parameters[53] + parameters[54] * t137)
-            + t149
-                * (t152 * parameters[53] + t81 * parameters[52] + parameters[54] * t149);
-        let t176 = t141
-            * (t141 * parameters[45] - t152 * parameters[46] + t81 * parameters[47]
-                - parameters[52] * t67 - parameters[53] * t137);
-        let t186 = t152
-            * (t141 * parameters[46] - t152 * parameters[48] + t81 * parameters[49]
-                + parameters[51] * t67 - parameters[53] * t149);
-        let t196 = t141 * parameters[47] - t152 * parameters[49] + t81 * parameters[50]
-            + parameters[51] * t137 + parameters[52] * t149;
-        let t199 = t159
-            - t67
-                * (t141 * parameters[52] + t152 * parameters[51] - parameters[54] * t67)
-            + t176 - t186 + t81 * t196;
-        let t205 = s6_arm * t149 - c6_arm * t67;
-        let t209 = t141 * c6_arm + t81 * s6_arm;
-        let t217 = c6_arm * t149 + s6_arm * t67;
-        let t220 = t81 * c6_arm - t141 * s6_arm;
-        let t227 = t205
-            * (t152 * parameters[65] - t209 * parameters[67] + parameters[68] * t205)
-            - t217
-                * (t220 * parameters[67] - t152 * parameters[66]
-                    - parameters[68] * t217);
-        let t244 = t209
-            * (t209 * parameters[59] + t220 * parameters[60] + t152 * parameters[61]
-                - parameters[66] * t137 - parameters[67] * t205);
-        let t254 = t220
-            * (t209 * parameters[60] + t220 * parameters[62] + t152 * parameters[63]
-                + parameters[65] * t137 - parameters[67] * t217);
-        let t264 = t209 * parameters[61] + t220 * parameters[63] + t152 * parameters[64]
-            + parameters[65] * t205 + parameters[66] * t217;
-        let t267 = t227
-            - t137
-                * (t209 * parameters[66] - t220 * parameters[65] - parameters[68] * t137)
-            + t244 + t254 + t152 * t264;
-        let t273 = s7_arm * t137 - c7_arm * t217;
-        let t278 = t209 * s7_arm + t152 * c7_arm;
-        let t285 = s7_arm * t217 + c7_arm * t137;
-        let t289 = t209 * c7_arm - t152 * s7_arm;
-        let t295 = t273
-            * (parameters[82] * t273 - (t220 * parameters[80] + t278 * parameters[81]))
-            + t285
-                * (t220 * parameters[79] - t289 * parameters[81]
-                    + parameters[82] * t285);
-        let t312 = t289
-            * (t289 * parameters[73] - t278 * parameters[74] + t220 * parameters[75]
-                + parameters[80] * t205 - parameters[81] * t285);
-        let t322 = t278
-            * (t289 * parameters[74] - t278 * parameters[76] + t220 * parameters[77]
-                - parameters[79] * t205 + parameters[81] * t273);
-        let t332 = t289 * parameters[75] - t278 * parameters[77] + t220 * parameters[78]
-            + parameters[79] * t285 - parameters[80] * t273;
-        let t335 = t295
-            + t205
-                * (t278 * parameters[79] + t289 * parameters[80] + parameters[82] * t205)
-            + t312 - t322 + t220 * t332;
-        let t343 = 0.4 * c3_arm;
-        let t344 = parameters[25] * t343;
-        let t345 = s3_arm * parameters[18] + c3_arm * parameters[20] + t344;
-        let t350 = 0.4 * s3_arm;
-        let t351 = parameters[25] * t350;
-        let t352 = s3_arm * parameters[17] + c3_arm * parameters[18] + t351;
-        let t361 = parameters[23] * t350
+        let t59 = t22 * (c2_arm * parameters[23] - 2.5 * t23 - parameters[26] * t22)
+            - t31 * (parameters[26] * t31 + c2_arm * parameters[24] + 2.5 * t32);
+        let t64 = s4_arm * t31;
+        let t69 = t15 * c4_arm - c2_arm * s4_arm;
+        let t74 = c4_arm * t31;
+        let t78 = t15 * s4_arm + c2_arm * c4_arm;
+        let t84 = t64
+            * (parameters[40] * t64 - (t17 * parameters[37] + t69 * parameters[39]))
+            + t74 * (parameters[40] * t74 + t78 * parameters[39] - t17 * parameters[38]);
+        let t101 = t69
+            * (t69 * parameters[31] - t78 * parameters[32] - t17 * parameters[33]
+                - parameters[38] * t22 - parameters[39] * t64);
+        let t111 = t78
+            * (t69 * parameters[32] - t78 * parameters[34] - t17 * parameters[35]
+                + parameters[37] * t22 - parameters[39] * t74);
+        let t121 = t69 * parameters[33] - t78 * parameters[35] - t17 * parameters[36]
+            + parameters[37] * t64 + parameters[38] * t74;
+        let t124 = t84
+            - t22 * (t78 * parameters[37] + t69 * parameters[38] - parameters[40] * t22)
+            + t101 - t111 - t17 * t121;
+        let t129 = t74 + 0.39 * t17;
+        let t132 = t22 + 0.39 * t69;
+        let t134 = s5_arm * t129 - c5_arm * t132;
+        let t138 = t69 * c5_arm - t17 * s5_arm;
+        let t146 = c5_arm * t129 + s5_arm * t132;
+        let t149 = t69 * s5_arm + t17 * c5_arm;
+        let t156 = t134
+            * (t78 * parameters[51] - t138 * parameters[53] + parameters[54] * t134)
+            + t146
+                * (t149 * parameters[53] + t78 * parameters[52] + parameters[54] * t146);
+        let t173 = t138
+            * (t138 * parameters[45] - t149 * parameters[46] + t78 * parameters[47]
+                - parameters[52] * t64 - parameters[53] * t134);
+        let t183 = t149
+            * (t138 * parameters[46] - t149 * parameters[48] + t78 * parameters[49]
+                + parameters[51] * t64 - parameters[53] * t146);
+        let t193 = t138 * parameters[47] - t149 * parameters[49] + t78 * parameters[50]
+            + parameters[51] * t134 + parameters[52] * t146;
+        let t196 = t156
+            - t64
+                * (t138 * parameters[52] + t149 * parameters[51] - parameters[54] * t64)
+            + t173 - t183 + t78 * t193;
+        let t202 = s6_arm * t146 - c6_arm * t64;
+        let t206 = t138 * c6_arm + t78 * s6_arm;
+        let t214 = c6_arm * t146 + s6_arm * t64;
+        let t217 = t78 * c6_arm - t138 * s6_arm;
+        let t224 = t202
+            * (t149 * parameters[65] - t206 * parameters[67] + parameters[68] * t202)
+            - t214
+                * (t217 * parameters[67] - t149 * parameters[66]
+                    - parameters[68] * t214);
+        let t241 = t206
+            * (t206 * parameters[59] + t217 * parameters[60] + t149 * parameters[61]
+                - parameters[66] * t134 - parameters[67] * t202);
+        let t251 = t217
+            * (t206 * parameters[60] + t217 * parameters[62] + t149 * parameters[63]
+                + parameters[65] * t134 - parameters[67] * t214);
+        let t261 = t206 * parameters[61] + t217 * parameters[63] + t149 * parameters[64]
+            + parameters[65] * t202 + parameters[66] * t214;
+        let t264 = t224
+            - t134
+                * (t206 * parameters[66] - t217 * parameters[65] - parameters[68] * t134)
+            + t241 + t251 + t149 * t261;
+        let t270 = s7_arm * t134 - c7_arm * t214;
+        let t275 = t206 * s7_arm + t149 * c7_arm;
+        let t282 = s7_arm * t214 + c7_arm * t134;
+        let t286 = t206 * c7_arm - t149 * s7_arm;
+        let t292 = t270
+            * (parameters[82] * t270 - (t217 * parameters[80] + t275 * parameters[81]))
+            + t282
+                * (t217 * parameters[79] - t286 * parameters[81]
+                    + parameters[82] * t282);
+        let t309 = t286
+            * (t286 * parameters[73] - t275 * parameters[74] + t217 * parameters[75]
+                + parameters[80] * t202 - parameters[81] * t282);
+        let t319 = t275
+            * (t286 * parameters[74] - t275 * parameters[76] + t217 * parameters[77]
+                - parameters[79] * t202 + parameters[81] * t270);
+        let t329 = t286 * parameters[75] - t275 * parameters[77] + t217 * parameters[78]
+            + parameters[79] * t282 - parameters[80] * t270;
+        let t332 = t292
+            + t202
+                * (t275 * parameters[79] + t286 * parameters[80] + parameters[82] * t202)
+            + t309 - t319 + t217 * t329;
+        let t340 = 0.4 * c3_arm;
+        let t341 = parameters[25] * t340;
+        let t342 = s3_arm * parameters[18] + c3_arm * parameters[20] + t341;
+        let t347 = 0.4 * s3_arm;
+        let t348 = parameters[25] * t347;
+        let t349 = s3_arm * parameters[17] + c3_arm * parameters[18] + t348;
+        let t358 = parameters[23] * t347
             - (s3_arm * parameters[19] + c3_arm * parameters[21])
-            + parameters[24] * t343;
-        let t365 = s3_arm * s4_arm;
-        let t367 = s3_arm * c4_arm;
-        let t374 = s4_arm * t343;
-        let t376 = parameters[32] * t365 - parameters[31] * t367
-            - c3_arm * parameters[33] + parameters[38] * t350 - parameters[39] * t374;
-        let t385 = c4_arm * t343;
-        let t387 = parameters[34] * t365 - parameters[32] * t367
-            - c3_arm * parameters[35] - parameters[37] * t350 - parameters[39] * t385;
-        let t398 = parameters[35] * t365 - parameters[33] * t367
-            - c3_arm * parameters[36] + parameters[37] * t374 + parameters[38] * t385;
-        let t401 = s2_arm * parameters[7] + c2_arm * parameters[9] + t17 * t345
-            - t15 * t352 + c2_arm * t361 + t72 * t376 - t81 * t387 - t17 * t398;
-        let t404 = c5_arm * t367 + c3_arm * s5_arm;
-        let t409 = t385 + 0.39 * c3_arm;
-        let t412 = t350 + 0.39 * t367;
-        let t414 = s5_arm * t409 + c5_arm * t412;
-        let t416 = parameters[53] * t404 - parameters[51] * t365 + parameters[54] * t414;
-        let t420 = s5_arm * t367 - c3_arm * c5_arm;
-        let t426 = s5_arm * t412 - c5_arm * t409;
-        let t428 = parameters[53] * t420 + parameters[52] * t365 + parameters[54] * t426;
-        let t435 = parameters[52] * t404 + parameters[51] * t420 + parameters[54] * t374;
-        let t446 = parameters[46] * t420 - parameters[45] * t404 - parameters[47] * t365
-            - parameters[52] * t374 - parameters[53] * t414;
-        let t456 = parameters[48] * t420 - parameters[46] * t404 - parameters[49] * t365
-            + parameters[51] * t374 + parameters[53] * t426;
-        let t467 = parameters[49] * t420 - parameters[47] * t404 - parameters[50] * t365
-            + parameters[51] * t414 - parameters[52] * t426;
-        let t470 = t137 * t416 - t149 * t428 + t67 * t435 + t141 * t446 - t152 * t456
-            + t81 * t467;
-        let t474 = c6_arm * t404 + s6_arm * t365;
-        let t480 = s6_arm * t426 + c6_arm * t374;
-        let t482 = parameters[67] * t474 - parameters[65] * t420 - parameters[68] * t480;
-        let t486 = s6_arm * t404 - c6_arm * t365;
-        let t492 = c6_arm * t426 - s6_arm * t374;
-        let t494 = parameters[67] * t486 + parameters[66] * t420 + parameters[68] * t492;
-        let t501 = parameters[66] * t474 + parameters[65] * t486 + parameters[68] * t414;
-        let t512 = parameters[60] * t486 - parameters[59] * t474 - parameters[61] * t420
-            - parameters[66] * t414 + parameters[67] * t480;
-        let t522 = parameters[62] * t486 - parameters[60] * t474 - parameters[63] * t420
-            + parameters[65] * t414 + parameters[67] * t492;
-        let t533 = parameters[63] * t486 - parameters[61] * t474 - parameters[64] * t420
-            - parameters[65] * t480 - parameters[66] * t492;
-        let t536 = t205 * t482 - t217 * t494 + t137 * t501 + t209 * t512 + t220 * t522
-            + t152 * t533;
-        let t540 = c7_arm * t492 + s7_arm * t414;
-        let t545 = s7_arm * t474 + c7_arm * t420;
-        let t548 = parameters[82] * t540
-            - (parameters[80] * t486 - parameters[81] * t545);
-        let t553 = s7_arm * t420 - c7_arm * t474;
-        let t558 = c7_arm * t414 - s7_arm * t492;
-        let t560 = parameters[79] * t486 - parameters[81] * t553 + parameters[82] * t558;
-        let t567 = parameters[80] * t553 - parameters[79] * t545 - parameters[82] * t480;
-        let t578 = parameters[73] * t553 + parameters[74] * t545 + parameters[75] * t486
-            - parameters[80] * t480 - parameters[81] * t558;
-        let t588 = parameters[74] * t553 + parameters[76] * t545 + parameters[77] * t486
-            + parameters[79] * t480 + parameters[81] * t540;
-        let t599 = parameters[75] * t553 + parameters[77] * t545 + parameters[78] * t486
-            + parameters[79] * t558 - parameters[80] * t540;
-        let t602 = t273 * t548 + t285 * t560 + t205 * t567 + t289 * t578 - t278 * t588
-            + t220 * t599;
-        let t603 = t401 + t470 + t536 + t602;
-        let t604 = s4_arm * parameters[39];
-        let t606 = c4_arm * parameters[39];
-        let t611 = c4_arm * parameters[37] - s4_arm * parameters[38];
-        let t616 = s4_arm * parameters[32] + c4_arm * parameters[34];
-        let t620 = s4_arm * parameters[31] + c4_arm * parameters[32];
-        let t625 = s4_arm * parameters[33] + c4_arm * parameters[35];
-        let t628 = t67 * t604 + t77 * t606 - t22 * t611 + t81 * t616 - t72 * t620
-            + t17 * t625;
-        let t631 = 0.39 * s4_arm;
-        let t632 = c5_arm * t631;
+            + parameters[24] * t340;
+        let t362 = s3_arm * s4_arm;
+        let t364 = s3_arm * c4_arm;
+        let t371 = s4_arm * t340;
+        let t373 = parameters[32] * t362 - parameters[31] * t364
+            - c3_arm * parameters[33] + parameters[38] * t347 - parameters[39] * t371;
+        let t382 = c4_arm * t340;
+        let t384 = parameters[34] * t362 - parameters[32] * t364
+            - c3_arm * parameters[35] - parameters[37] * t347 - parameters[39] * t382;
+        let t395 = parameters[35] * t362 - parameters[33] * t364
+            - c3_arm * parameters[36] + parameters[37] * t371 + parameters[38] * t382;
+        let t398 = s2_arm * parameters[7] + c2_arm * parameters[9] + t17 * t342
+            - t15 * t349 + c2_arm * t358 + t69 * t373 - t78 * t384 - t17 * t395;
+        let t401 = c5_arm * t364 + c3_arm * s5_arm;
+        let t406 = t382 + 0.39 * c3_arm;
+        let t409 = t347 + 0.39 * t364;
+        let t411 = s5_arm * t406 + c5_arm * t409;
+        let t413 = parameters[53] * t401 - parameters[51] * t362 + parameters[54] * t411;
+        let t417 = s5_arm * t364 - c3_arm * c5_arm;
+        let t423 = s5_arm * t409 - c5_arm * t406;
+        let t425 = parameters[53] * t417 + parameters[52] * t362 + parameters[54] * t423;
+        let t432 = parameters[52] * t401 + parameters[51] * t417 + parameters[54] * t371;
+        let t443 = parameters[46] * t417 - parameters[45] * t401 - parameters[47] * t362
+            - parameters[52] * t371 - parameters[53] * t411;
+        let t453 = parameters[48] * t417 - parameters[46] * t401 - parameters[49] * t362
+            + parameters[51] * t371 + parameters[53] * t423;
+        let t464 = parameters[49] * t417 - parameters[47] * t401 - parameters[50] * t362
+            + parameters[51] * t411 - parameters[52] * t423;
+        let t467 = t134 * t413 - t146 * t425 + t64 * t432 + t138 * t443 - t149 * t453
+            + t78 * t464;
+        let t471 = c6_arm * t401 + s6_arm * t362;
+        let t477 = s6_arm * t423 + c6_arm * t371;
+        let t479 = parameters[67] * t471 - parameters[65] * t417 - parameters[68] * t477;
+        let t483 = s6_arm * t401 - c6_arm * t362;
+        let t489 = c6_arm * t423 - s6_arm * t371;
+        let t491 = parameters[67] * t483 + parameters[66] * t417 + parameters[68] * t489;
+        let t498 = parameters[66] * t471 + parameters[65] * t483 + parameters[68] * t411;
+        let t509 = parameters[60] * t483 - parameters[59] * t471 - parameters[61] * t417
+            - parameters[66] * t411 + parameters[67] * t477;
+        let t519 = parameters[62] * t483 - parameters[60] * t471 - parameters[63] * t417
+            + parameters[65] * t411 + parameters[67] * t489;
+        let t530 = parameters[63] * t483 - parameters[61] * t471 - parameters[64] * t417
+            - parameters[65] * t477 - parameters[66] * t489;
+        let t533 = t202 * t479 - t214 * t491 + t134 * t498 + t206 * t509 + t217 * t519
+            + t149 * t530;
+        let t537 = c7_arm * t489 + s7_arm * t411;
+        let t542 = s7_arm * t471 + c7_arm * t417;
+        let t545 = parameters[82] * t537
+            - (parameters[80] * t483 - parameters[81] * t542);
+        let t550 = s7_arm * t417 - c7_arm * t471;
+        let t555 = c7_arm * t411 - s7_arm * t489;
+        let t557 = parameters[79] * t483 - parameters[81] * t550 + parameters[82] * t555;
+        let t564 = parameters[80] * t550 - parameters[79] * t542 - parameters[82] * t477;
+        let t575 = parameters[73] * t550 + parameters[74] * t542 + parameters[75] * t483
+            - parameters[80] * t477 - parameters[81] * t555;
+        let t585 = parameters[74] * t550 + parameters[76] * t542 + parameters[77] * t483
+            + parameters[79] * t477 + parameters[81] * t537;
+        let t596 = parameters[75] * t550 + parameters[77] * t542 + parameters[78] * t483
+            + parameters[79] * t555 - parameters[80] * t537;
+        let t599 = t270 * t545 + t282 * t557 + t202 * t564 + t286 * t575 - t275 * t585
+            + t217 * t596;
+        let t600 = t398 + t467 + t533 + t599;
+        let t604 = c4_arm * parameters[37] - s4_arm * parameters[38];
+        let t609 = s4_arm * parameters[32] + c4_arm * parameters[34];
+        let t613 = s4_arm * parameters[31] + c4_arm * parameters[32];
+        let t618 = s4_arm * parameters[33] + c4_arm * parameters[35];
+        let t622 = t44 + t31 * parameters[39] - t22 * t604 + t78 * t609 - t69 * t613
+            + t17 * t618;
+        let t624 = 0.39 * s4_arm;
+        let t625 = c5_arm * t624;
+        let t626 = 2.5641025641025643 * t625;
+        let t627 = parameters[53] * t626;
+        let t630 = c4_arm * parameters[51] + t627 + parameters[54] * t625;
+        let t632 = s5_arm * t624;
         let t633 = 2.5641025641025643 * t632;
         let t634 = parameters[53] * t633;
-        let t637 = c4_arm * parameters[51] + t634 + parameters[54] * t632;
-        let t639 = s5_arm * t631;
-        let t640 = 2.5641025641025643 * t639;
-        let t641 = parameters[53] * t640;
-        let t645 = t641 - c4_arm * parameters[52] + parameters[54] * t639;
-        let t650 = parameters[52] * t633 + parameters[51] * t640;
-        let t659 = parameters[46] * t640 - parameters[45] * t633
-            + c4_arm * parameters[47] - 0.39 * t634;
-        let t667 = parameters[48] * t640 - parameters[46] * t633
-            + c4_arm * parameters[49] + 0.39 * t641;
-        let t678 = parameters[49] * t640 - parameters[47] * t633
-            + c4_arm * parameters[50] + parameters[51] * t632 - parameters[52] * t639;
-        let t681 = t137 * t637 - t149 * t645 + t67 * t650 + t141 * t659 - t152 * t667
-            + t81 * t678;
-        let t685 = c4_arm * s6_arm - c6_arm * t633;
-        let t689 = s6_arm * t633 + c4_arm * c6_arm;
-        let t696 = s6_arm * t639;
-        let t698 = parameters[59] * t685 + parameters[60] * t689 - parameters[61] * t640
-            - parameters[66] * t632 + parameters[67] * t696;
-        let t707 = c6_arm * t639;
-        let t709 = parameters[60] * t685 + parameters[62] * t689 - parameters[63] * t640
-            + parameters[65] * t632 + parameters[67] * t707;
-        let t720 = parameters[61] * t685 + parameters[63] * t689 - parameters[64] * t640
-            - parameters[65] * t696 - parameters[66] * t707;
-        let t727 = parameters[65] * t640 + parameters[67] * t685 + parameters[68] * t696;
-        let t733 = parameters[67] * t689 + parameters[66] * t640 + parameters[68] * t707;
-        let t740 = parameters[66] * t685 - parameters[65] * t689 - parameters[68] * t632;
-        let t743 = t209 * t698 + t220 * t709 + t152 * t720
-            - (t205 * t727 + t217 * t733 + t137 * t740);
-        let t747 = c7_arm * t707 + s7_arm * t632;
-        let t752 = c7_arm * t640 - s7_arm * t685;
-        let t755 = parameters[82] * t747
-            - (parameters[80] * t689 - parameters[81] * t752);
-        let t760 = c7_arm * t685 + s7_arm * t640;
-        let t765 = c7_arm * t632 - s7_arm * t707;
-        let t767 = parameters[79] * t689 - parameters[81] * t760 + parameters[82] * t765;
-        let t774 = parameters[80] * t760 - parameters[79] * t752 - parameters[82] * t696;
-        let t785 = parameters[73] * t760 + parameters[74] * t752 + parameters[75] * t689
-            - parameters[80] * t696 - parameters[81] * t765;
-        let t795 = parameters[74] * t760 + parameters[76] * t752 + parameters[77] * t689
-            + parameters[79] * t696 + parameters[81] * t747;
-        let t806 = parameters[75] * t760 + parameters[77] * t752 + parameters[78] * t689
-            + parameters[79] * t765 - parameters[80] * t747;
-        let t809 = t273 * t755 + t285 * t767 + t205 * t774 + t289 * t785 - t278 * t795
-            + t220 * t806;
-        let t810 = t44 + t628 + t681 + t743 + t809;
-        let t814 = s5_arm * parameters[53];
-        let t816 = s5_arm * parameters[45] + c5_arm * parameters[46] + 0.39 * t814;
-        let t821 = c5_arm * parameters[53];
-        let t823 = s5_arm * parameters[46] + c5_arm * parameters[48] + 0.39 * t821;
-        let t829 = 0.39 * s5_arm;
-        let t832 = 0.39 * c5_arm;
-        let t834 = s5_arm * parameters[47] + c5_arm * parameters[49]
-            - parameters[51] * t829 - parameters[52] * t832;
-        let t838 = t814 + parameters[54] * t829;
-        let t841 = t821 + parameters[54] * t832;
-        let t846 = s5_arm * parameters[52] - c5_arm * parameters[51];
-        let t849 = t141 * t816 - t152 * t823 + t81 * t834
-            - (t137 * t838 + t149 * t841 + t67 * t846);
-        let t851 = s5_arm * c6_arm;
-        let t853 = s5_arm * s6_arm;
-        let t860 = s6_arm * t832;
-        let t862 = parameters[59] * t851 - parameters[60] * t853
-            - c5_arm * parameters[61] + parameters[66] * t829 + parameters[67] * t860;
-        let t871 = c6_arm * t832;
-        let t873 = parameters[60] * t851 - parameters[62] * t853
-            - c5_arm * parameters[63] - parameters[65] * t829 + parameters[67] * t871;
-        let t884 = parameters[61] * t851 - parameters[63] * t853
-            - c5_arm * parameters[64] - parameters[65] * t860 - parameters[66] * t871;
-        let t891 = c5_arm * parameters[65] + parameters[67] * t851
-            + parameters[68] * t860;
-        let t897 = c5_arm * parameters[66] - parameters[67] * t853
-            + parameters[68] * t871;
-        let t904 = parameters[66] * t851 + parameters[65] * t853 + parameters[68] * t829;
-        let t907 = t209 * t862 + t220 * t873 + t152 * t884
-            - (t205 * t891 + t217 * t897 + t137 * t904);
-        let t911 = c7_arm * t871 - s7_arm * t829;
-        let t916 = c5_arm * c7_arm - s7_arm * t851;
-        let t919 = parameters[82] * t911 + parameters[80] * t853 + parameters[81] * t916;
-        let t924 = c7_arm * t851 + c5_arm * s7_arm;
-        let t929 = s7_arm * t871 + c7_arm * t829;
-        let t931 = parameters[79] * t853 + parameters[81] * t924 + parameters[82] * t929;
-        let t938 = parameters[80] * t924 - parameters[79] * t916 - parameters[82] * t860;
-        let t949 = parameters[73] * t924 + parameters[74] * t916 - parameters[75] * t853
-            - parameters[80] * t860 + parameters[81] * t929;
-        let t959 = parameters[74] * t924 + parameters[76] * t916 - parameters[77] * t853
-            + parameters[79] * t860 + parameters[81] * t911;
-        let t970 = parameters[75] * t924 + parameters[77] * t916 - parameters[78] * t853
-            - parameters[79] * t929 - parameters[80] * t911;
-        let t973 = t273 * t919 - t285 * t931 + t205 * t938 + t289 * t949 - t278 * t959
-            + t220 * t970;
-        let t974 = t124 + t849 + t907 + t973;
-        let t977 = s6_arm * parameters[59] + c6_arm * parameters[60];
-        let t981 = s6_arm * parameters[60] + c6_arm * parameters[62];
-        let t986 = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let t989 = s6_arm * parameters[67];
-        let t991 = c6_arm * parameters[67];
-        let t996 = s6_arm * parameters[66] - c6_arm * parameters[65];
-        let t999 = t209 * t977 + t220 * t981 + t152 * t986
-            - (t205 * t989 + t217 * t991 + t137 * t996);
-        let t1002 = s6_arm * c7_arm;
-        let t1004 = c6_arm * parameters[79] - parameters[81] * t1002;
-        let t1007 = s6_arm * s7_arm;
-        let t1009 = c6_arm * parameters[80] + parameters[81] * t1007;
-        let t1014 = parameters[79] * t1007 + parameters[80] * t1002;
-        let t1021 = parameters[73] * t1002 - parameters[74] * t1007
+        let t638 = t634 - c4_arm * parameters[52] + parameters[54] * t632;
+        let t643 = parameters[52] * t626 + parameters[51] * t633;
+        let t652 = parameters[46] * t633 - parameters[45] * t626
+            + c4_arm * parameters[47] - 0.39 * t627;
+        let t660 = parameters[48] * t633 - parameters[46] * t626
+            + c4_arm * parameters[49] + 0.39 * t634;
+        let t671 = parameters[49] * t633 - parameters[47] * t626
+            + c4_arm * parameters[50] + parameters[51] * t625 - parameters[52] * t632;
+        let t674 = t134 * t630 - t146 * t638 + t64 * t643 + t138 * t652 - t149 * t660
+            + t78 * t671;
+        let t678 = c4_arm * s6_arm - c6_arm * t626;
+        let t682 = s6_arm * t626 + c4_arm * c6_arm;
+        let t689 = s6_arm * t632;
+        let t691 = parameters[59] * t678 + parameters[60] * t682 - parameters[61] * t633
+            - parameters[66] * t625 + parameters[67] * t689;
+        let t700 = c6_arm * t632;
+        let t702 = parameters[60] * t678 + parameters[62] * t682 - parameters[63] * t633
+            + parameters[65] * t625 + parameters[67] * t700;
+        let t713 = parameters[61] * t678 + parameters[63] * t682 - parameters[64] * t633
+            - parameters[65] * t689 - parameters[66] * t700;
+        let t720 = parameters[65] * t633 + parameters[67] * t678 + parameters[68] * t689;
+        let t726 = parameters[67] * t682 + parameters[66] * t633 + parameters[68] * t700;
+        let t733 = parameters[66] * t678 - parameters[65] * t682 - parameters[68] * t625;
+        let t736 = t206 * t691 + t217 * t702 + t149 * t713
+            - (t202 * t720 + t214 * t726 + t134 * t733);
+        let t738 = s5_arm * c6_arm;
+        let t741 = c7_arm * t738 + c5_arm * s7_arm;
+        let t742 = t624 * t741;
+        let t747 = c7_arm * t633 - s7_arm * t678;
+        let t750 = parameters[82] * t742
+            - (parameters[80] * t682 - parameters[81] * t747);
+        let t755 = c7_arm * t678 + s7_arm * t633;
+        let t760 = c5_arm * c7_arm - s7_arm * t738;
+        let t761 = t624 * t760;
+        let t763 = parameters[79] * t682 - parameters[81] * t755 + parameters[82] * t761;
+        let t770 = parameters[80] * t755 - parameters[79] * t747 - parameters[82] * t689;
+        let t781 = parameters[73] * t755 + parameters[74] * t747 + parameters[75] * t682
+            - parameters[80] * t689 - parameters[81] * t761;
+        let t791 = parameters[74] * t755 + parameters[76] * t747 + parameters[77] * t682
+            + parameters[79] * t689 + parameters[81] * t742;
+        let t802 = parameters[75] * t755 + parameters[77] * t747 + parameters[78] * t682
+            + parameters[79] * t761 - parameters[80] * t742;
+        let t805 = t270 * t750 + t282 * t763 + t202 * t770 + t286 * t781 - t275 * t791
+            + t217 * t802;
+        let t806 = t622 + t674 + t736 + t805;
+        let t810 = s5_arm * parameters[53];
+        let t812 = s5_arm * parameters[45] + c5_arm * parameters[46] + 0.39 * t810;
+        let t817 = c5_arm * parameters[53];
+        let t819 = s5_arm * parameters[46] + c5_arm * parameters[48] + 0.39 * t817;
+        let t825 = 0.39 * s5_arm;
+        let t828 = 0.39 * c5_arm;
+        let t830 = s5_arm * parameters[47] + c5_arm * parameters[49]
+            - parameters[51] * t825 - parameters[52] * t828;
+        let t834 = t810 + parameters[54] * t825;
+        let t837 = t817 + parameters[54] * t828;
+        let t842 = s5_arm * parameters[52] - c5_arm * parameters[51];
+        let t845 = t138 * t812 - t149 * t819 + t78 * t830
+            - (t134 * t834 + t146 * t837 + t64 * t842);
+        let t848 = s5_arm * s6_arm;
+        let t855 = s6_arm * t828;
+        let t857 = parameters[59] * t738 - parameters[60] * t848
+            - c5_arm * parameters[61] + parameters[66] * t825 + parameters[67] * t855;
+        let t866 = c6_arm * t828;
+        let t868 = parameters[60] * t738 - parameters[62] * t848
+            - c5_arm * parameters[63] - parameters[65] * t825 + parameters[67] * t866;
+        let t879 = parameters[61] * t738 - parameters[63] * t848
+            - c5_arm * parameters[64] - parameters[65] * t855 - parameters[66] * t866;
+        let t886 = c5_arm * parameters[65] + parameters[67] * t738
+            + parameters[68] * t855;
+        let t892 = c5_arm * parameters[66] - parameters[67] * t848
+            + parameters[68] * t866;
+        let t899 = parameters[66] * t738 + parameters[65] * t848 + parameters[68] * t825;
+        let t902 = t206 * t857 + t217 * t868 + t149 * t879
+            - (t202 * t886 + t214 * t892 + t134 * t899);
+        let t906 = c7_arm * t866 - s7_arm * t825;
+        let t911 = parameters[82] * t906 + parameters[80] * t848 + parameters[81] * t760;
+        let t918 = s7_arm * t866 + c7_arm * t825;
+        let t920 = parameters[79] * t848 + parameters[81] * t741 + parameters[82] * t918;
+        let t927 = parameters[80] * t741 - parameters[79] * t760 - parameters[82] * t855;
+        let t938 = parameters[73] * t741 + parameters[74] * t760 - parameters[75] * t848
+            - parameters[80] * t855 + parameters[81] * t918;
+        let t948 = parameters[74] * t741 + parameters[76] * t760 - parameters[77] * t848
+            + parameters[79] * t855 + parameters[81] * t906;
+        let t959 = parameters[75] * t741 + parameters[77] * t760 - parameters[78] * t848
+            - parameters[79] * t918 - parameters[80] * t906;
+        let t962 = t270 * t911 - t282 * t920 + t202 * t927 + t286 * t938 - t275 * t948
+            + t217 * t959;
+        let t963 = t121 + t845 + t902 + t962;
+        let t966 = s6_arm * parameters[59] + c6_arm * parameters[60];
+        let t970 = s6_arm * parameters[60] + c6_arm * parameters[62];
+        let t975 = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let t981 = s6_arm * parameters[66] - c6_arm * parameters[65];
+        let t985 = t193 + t206 * t966 + t217 * t970 + t149 * t975
+            - (t146 * parameters[67] + t134 * t981);
+        let t987 = s6_arm * c7_arm;
+        let t989 = c6_arm * parameters[79] - parameters[81] * t987;
+        let t992 = s6_arm * s7_arm;
+        let t994 = c6_arm * parameters[80] + parameters[81] * t992;
+        let t999 = parameters[79] * t992 + parameters[80] * t987;
+        let t1006 = parameters[73] * t987 - parameters[74] * t992
             + c6_arm * parameters[75];
-        let t1027 = parameters[74] * t1002 - parameters[76] * t1007
+        let t1012 = parameters[74] * t987 - parameters[76] * t992
             + c6_arm * parameters[77];
-        let t1034 = parameters[75] * t1002 - parameters[77] * t1007
+        let t1019 = parameters[75] * t987 - parameters[77] * t992
             + c6_arm * parameters[78];
-        let t1037 = t285 * t1004 - t273 * t1009 + t205 * t1014 + t289 * t1021
-            - t278 * t1027 + t220 * t1034;
-        let t1038 = t196 + t999 + t1037;
-        let t1039 = s7_arm * parameters[81];
-        let t1041 = c7_arm * parameters[81];
-        let t1046 = c7_arm * parameters[79] - s7_arm * parameters[80];
-        let t1051 = s7_arm * parameters[74] + c7_arm * parameters[76];
-        let t1055 = s7_arm * parameters[73] + c7_arm * parameters[74];
-        let t1060 = s7_arm * parameters[75] + c7_arm * parameters[77];
-        let t1063 = t285 * t1039 - t273 * t1041 + t205 * t1046 + t278 * t1051
-            - t289 * t1055 - t220 * t1060;
-        let t1064 = t264 + t1063;
-        let t1078 = t350 * (2.5 * t351 + parameters[26] * t350)
-            + t343 * (parameters[26] * t343 + 2.5 * t344) + s3_arm * t352
-            + c3_arm * t345;
-        let t1092 = t374
-            * (parameters[39] * t367 - c3_arm * parameters[37] + parameters[40] * t374)
-            - t385
-                * (c3_arm * parameters[38] + parameters[39] * t365
-                    - parameters[40] * t385);
-        let t1105 = t1092
-            + t350
-                * (parameters[40] * t350
-                    - (parameters[37] * t365 + parameters[38] * t367)) + t365 * t387
-            - t367 * t376 - c3_arm * t398;
-        let t1117 = t426 * t428 + t414 * t416 + t374 * t435 + t420 * t456 - t404 * t446
-            - t365 * t467;
-        let t1129 = t492 * t494 - t480 * t482 + t414 * t501 + t486 * t522 - t474 * t512
-            - t420 * t533;
-        let t1141 = t540 * t548 + t558 * t560 - t480 * t567 + t553 * t578 + t545 * t588
-            + t486 * t599;
-        let t1153 = t374 * t604 + t385 * t606 + t350 * t611 + t367 * t620 - t365 * t616
-            + c3_arm * t625;
-        let t1165 = t426 * t645 + t414 * t637 + t374 * t650 + t420 * t667 - t404 * t659
-            - t365 * t678;
-        let t1177 = t492 * t733 + t480 * t727 - t414 * t740 + t486 * t709 - t474 * t698
-            - t420 * t720;
-        let t1189 = t540 * t755 + t558 * t767 - t480 * t774 + t553 * t785 + t545 * t795
-            + t486 * t806;
-        let t1190 = t361 + t1153 + t1165 + t1177 + t1189;
-        let t1201 = t426 * t841 - t414 * t838 - t374 * t846 + t420 * t823 - t404 * t816
-            - t365 * t834;
-        let t1213 = t492 * t897 + t480 * t891 - t414 * t904 + t486 * t873 - t474 * t862
-            - t420 * t884;
-        let t1225 = t540 * t919 - t558 * t931 - t480 * t938 + t553 * t949 + t545 * t959
-            + t486 * t970;
-        let t1226 = t398 + t1201 + t1213 + t1225;
-        let t1237 = t492 * t991 + t480 * t989 - t414 * t996 + t486 * t981 - t474 * t977
-            - t420 * t986;
-        let t1249 = t558 * t1004 - t540 * t1009 - t480 * t1014 + t553 * t1021
-            + t545 * t1027 + t486 * t1034;
-        let t1250 = t467 + t1237 + t1249;
-        let t1261 = t558 * t1039 - t540 * t1041 - t480 * t1046
-            - (t553 * t1055 + t545 * t1051 + t486 * t1060);
-        let t1262 = t533 + t1261;
-        let t1277 = parameters[22] + parameters[27] + s4_arm * t620 + c4_arm * t616
-            + t639 * t645 + t632 * t637 + t640 * t667 - t633 * t659 + c4_arm * t678;
-        let t1288 = t707 * t733 + t696 * t727 - t632 * t740 + t685 * t698 + t689 * t709
-            - t640 * t720;
-        let t1300 = t747 * t755 + t765 * t767 - t696 * t774 + t760 * t785 + t752 * t795
-            + t689 * t806;
-        let t1313 = t640 * t823 - t633 * t816 + c4_arm * t834 - t625 + t685 * t862
-            + t689 * t873 - t640 * t884;
-        let t1319 = t1313 + t760 * t949 + t752 * t959 + t689 * t970;
-        let t1330 = t707 * t991 + t696 * t989 - t632 * t996 + t685 * t977 + t689 * t981
-            - t640 * t986;
-        let t1342 = t765 * t1004 - t747 * t1009 - t696 * t1014 + t760 * t1021
-            + t752 * t1027 + t689 * t1034;
-        let t1343 = t678 + t1330 + t1342;
-        let t1354 = t765 * t1039 - t747 * t1041 - t696 * t1046
-            - (t760 * t1055 + t752 * t1051 + t689 * t1060);
-        let t1355 = t720 + t1354;
-        let t1375 = t871 * t897 + t860 * t891 + t829 * t904 + t851 * t862 - t853 * t873
-            - c5_arm * t884;
-        let t1376 = parameters[36] + parameters[41] + t832 * t841 + t829 * t838
-            + s5_arm * t816 + c5_arm * t823 + t1375;
-        let t1387 = t911 * t919 + t929 * t931 - t860 * t938 + t924 * t949 + t916 * t959
-            - t853 * t970;
-        let t1399 = t871 * t991 + t860 * t989 + t829 * t996 + t851 * t977 - t853 * t981
-            - c5_arm * t986;
-        let t1411 = t924 * t1021 + t916 * t1027 - t853 * t1034
-            - (t911 * t1009 + t929 * t1004 + t860 * t1014);
-        let t1412 = t834 + t1399 + t1411;
-        let t1423 = t853 * t1060 - (t924 * t1055 + t916 * t1051)
-            - (t911 * t1041 + t929 * t1039 + t860 * t1046);
-        let t1424 = t884 + t1423;
-        let t1435 = parameters[50] + parameters[55] + s6_arm * t977 + c6_arm * t981
-            + t1002 * t1021 - t1007 * t1027 + c6_arm * t1034;
-        let t1441 = t986 + t1007 * t1051 - t1002 * t1055 - c6_arm * t1060;
+        let t1022 = t282 * t989 - t270 * t994 + t202 * t999 + t286 * t1006 - t275 * t1012
+            + t217 * t1019;
+        let t1023 = t985 + t1022;
+        let t1027 = c7_arm * parameters[79] - s7_arm * parameters[80];
+        let t1032 = s7_arm * parameters[74] + c7_arm * parameters[76];
+        let t1036 = s7_arm * parameters[73] + c7_arm * parameters[74];
+        let t1041 = s7_arm * parameters[75] + c7_arm * parameters[77];
+        let t1045 = t261 + t214 * parameters[81] + t202 * t1027 + t275 * t1032
+            - t286 * t1036 - t217 * t1041;
+        let t1059 = t347 * (2.5 * t348 + parameters[26] * t347)
+            + t340 * (parameters[26] * t340 + 2.5 * t341) + s3_arm * t349
+            + c3_arm * t342;
+        let t1073 = t371
+            * (parameters[39] * t364 - c3_arm * parameters[37] + parameters[40] * t371)
+            - t382
+                * (c3_arm * parameters[38] + parameters[39] * t362
+                    - parameters[40] * t382);
+        let t1086 = t1073
+            + t347
+                * (parameters[40] * t347
+                    - (parameters[37] * t362 + parameters[38] * t364)) + t362 * t384
+            - t364 * t373 - c3_arm * t395;
+        let t1098 = t423 * t425 + t411 * t413 + t371 * t432 + t417 * t453 - t401 * t443
+            - t362 * t464;
+        let t1110 = t489 * t491 - t477 * t479 + t411 * t498 + t483 * t519 - t471 * t509
+            - t417 * t530;
+        let t1122 = t537 * t545 + t555 * t557 - t477 * t564 + t550 * t575 + t542 * t585
+            + t483 * t596;
+        let t1133 = t358 + parameters[39] * t340 + t347 * t604 + t364 * t613
+            - t362 * t609 + c3_arm * t618;
+        let t1144 = t423 * t638 + t411 * t630 + t371 * t643 + t417 * t660 - t401 * t652
+            - t362 * t671;
+        let t1156 = t489 * t726 + t477 * t720 - t411 * t733 + t483 * t702 - t471 * t691
+            - t417 * t713;
+        let t1168 = t537 * t750 + t555 * t763 - t477 * t770 + t550 * t781 + t542 * t791
+            + t483 * t802;
+        let t1169 = t1133 + t1144 + t1156 + t1168;
+        let t1180 = t423 * t837 - t411 * t834 - t371 * t842 + t417 * t819 - t401 * t812
+            - t362 * t830;
+        let t1192 = t489 * t892 + t477 * t886 - t411 * t899 + t483 * t868 - t471 * t857
+            - t417 * t879;
+        let t1204 = t537 * t911 - t555 * t920 - t477 * t927 + t550 * t938 + t542 * t948
+            + t483 * t959;
+        let t1205 = t395 + t1180 + t1192 + t1204;
+        let t1215 = t464 + parameters[67] * t423 - t411 * t981 + t483 * t970
+            - t471 * t966 - t417 * t975;
+        let t1226 = t555 * t989 - t537 * t994 - t477 * t999 + t550 * t1006 + t542 * t1012
+            + t483 * t1019;
+        let t1227 = t1215 + t1226;
+        let t1237 = t530
+            - (parameters[81] * t489 + t477 * t1027 + t550 * t1036 + t542 * t1032
+                + t483 * t1041);
+        let t1252 = parameters[22] + parameters[27] + s4_arm * t613 + c4_arm * t609
+            + t632 * t638 + t625 * t630 + t633 * t660 - t626 * t652 + c4_arm * t671;
+        let t1263 = t700 * t726 + t689 * t720 - t625 * t733 + t678 * t691 + t682 * t702
+            - t633 * t713;
+        let t1275 = t742 * t750 + t761 * t763 - t689 * t770 + t755 * t781 + t747 * t791
+            + t682 * t802;
+        let t1288 = t633 * t819 - t626 * t812 + c4_arm * t830 - t618 + t678 * t857
+            + t682 * t868 - t633 * t879;
+        let t1294 = t1288 + t755 * t938 + t747 * t948 + t682 * t959;
+        let t1304 = t671 + parameters[67] * t632 - t625 * t981 + t678 * t966
+            + t682 * t970 - t633 * t975;
+        let t1315 = t761 * t989 - t742 * t994 - t689 * t999 + t755 * t1006 + t747 * t1012
+            + t682 * t1019;
+        let t1316 = t1304 + t1315;
+        let t1326 = t713
+            - (parameters[81] * t700 + t689 * t1027 + t755 * t1036 + t747 * t1032
+                + t682 * t1041);
+        let t1346 = t866 * t892 + t855 * t886 + t825 * t899 + t738 * t857 - t848 * t868
+            - c5_arm * t879;
+        let t1347 = parameters[36] + parameters[41] + t828 * t837 + t825 * t834
+            + s5_arm * t812 + c5_arm * t819 + t1346;
+        let t1358 = t906 * t911 + t918 * t920 - t855 * t927 + t741 * t938 + t760 * t948
+            - t848 * t959;
+        let t1369 = t830 + parameters[67] * t828 + t825 * t981 + t738 * t966
+            - t848 * t970 - c5_arm * t975;
+        let t1380 = t741 * t1006 + t760 * t1012 - t848 * t1019
+            - (t906 * t994 + t918 * t989 + t855 * t999);
+        let t1381 = t1369 + t1380;
+        let t1391 = t879 + t848 * t1041 - (t741 * t1036 + t760 * t1032)
+            - (parameters[81] * t866 + t855 * t1027);
+        let t1402 = parameters[50] + parameters[55] + s6_arm * t966 + c6_arm * t970
+            + t987 * t1006 - t992 * t1012 + c6_arm * t1019;
+        let t1408 = t975 + t992 * t1032 - t987 * t1036 - c6_arm * t1041;
         [
             [
-                t12 + t35 + c2_arm * t44 - t62 + t127 + t199 + t267 + t335, t603, t810, t974, t1038,
-                t1064, t332,
+                t12 + t35 + c2_arm * t44 - t59 + t124 + t196 + t264 + t332, t600, t806, t963, t1023,
+                t1045, t329,
             ],
             [
-                t603, parameters[10] + parameters[13] + t1078 + t1105 + t1117 + t1129 + t1141,
-                t1190, t1226, t1250, t1262, t599,
+                t600, parameters[10] + parameters[13] + t1059 + t1086 + t1098 + t1110 + t1122,
+                t1169, t1205, t1227, t1237, t596,
             ],
-            [t810, t1190, t1277 + t1288 + t1300, t1319, t1343, t1355, t806],
-            [t974, t1226, t1319, t1376 + t1387, t1412, t1424, t970],
-            [t1038, t1250, t1343, t1412, t1435, t1441, t1034],
+            [t806, t1169, t1252 + t1263 + t1275, t1294, t1316, t1326, t802],
+            [t963, t1205, t1294, t1347 + t1358, t1381, t1391, t959],
+            [t1023, t1227, t1316, t1381, t1402, t1408, t1019],
             [
-                t1064, t1262, t1355, t1424, t1441,
-                parameters[64] + parameters[69] + s7_arm * t1055 + c7_arm * t1051, -t1060,
+                t1045, t1237, t1326, t1391, t1408,
+                parameters[64] + parameters[69] + s7_arm * t1036 + c7_arm * t1032, -t1041,
             ],
-            [t332, t599, t806, t970, t1034, -t1060, parameters[78] + parameters[83]],
+            [t329, t596, t802, t959, t1019, -t1041, parameters[78] + parameters[83]],
         ]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -2092,7 +2078,7 @@ impl KukaLwr {
     ///
     /// Output: 7.
     ///
-    /// 948 operations (429 additions, 519 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 960 intermediates.
+    /// 944 operations (427 additions, 517 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 956 intermediates.
     #[must_use]
     pub fn bias(
         joints: &[f64; 7],
@@ -2386,38 +2372,37 @@ impl KukaLwr {
             + ::overact::math::signed(parameters[29], joint_velocities[2])
             + parameters[30] - (s4_arm * t209 + c4_arm * t235) + t823 * t355
             + t825 * t331 + t828 * t409 - t830 * t389 + c4_arm * t427;
-        let t837 = c6_arm * t823;
         let t839 = s6_arm * t823;
         let t846 = c4_arm * s6_arm - c6_arm * t830;
         let t850 = s6_arm * t830 + c4_arm * c6_arm;
-        let t855 = t837 * t489 - t839 * t465 - t825 * t500 + t846 * t521 + t850 * t541
-            - t828 * t559;
-        let t867 = (c7_arm * t837 + s7_arm * t825) * t597
-            - (c7_arm * t825 - s7_arm * t837) * t621 - t839 * t632;
-        let t878 = (c7_arm * t846 + s7_arm * t828) * t653
+        let t855 = c6_arm * t823 * t489 - t839 * t465 - t825 * t500 + t846 * t521
+            + t850 * t541 - t828 * t559;
+        let t857 = s5_arm * c6_arm;
+        let t860 = c7_arm * t857 + c5_arm * s7_arm;
+        let t865 = c5_arm * c7_arm - s7_arm * t857;
+        let t881 = (c7_arm * t846 + s7_arm * t828) * t653
             + (c7_arm * t828 - s7_arm * t846) * t673 + t850 * t691;
-        let t886 = 0.39 * c5_arm;
-        let t888 = 0.39 * s5_arm;
-        let t895 = t255 + joint_velocities[3] * parameters[42]
+        let t883 = t836 + t855 + t822 * t860 * t597 - t822 * t865 * t621 - t839 * t632
+            + t881;
+        let t889 = 0.39 * c5_arm;
+        let t891 = 0.39 * s5_arm;
+        let t898 = t255 + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + t886 * t355 - t888 * t331 + s5_arm * t389 + c5_arm * t409;
-        let t896 = c6_arm * t886;
-        let t898 = s6_arm * t886;
-        let t903 = s5_arm * c6_arm;
-        let t905 = s5_arm * s6_arm;
-        let t910 = t896 * t489 - t898 * t465 + t888 * t500 + t903 * t521 - t905 * t541
+            + parameters[44] + t889 * t355 - t891 * t331 + s5_arm * t389 + c5_arm * t409;
+        let t899 = c6_arm * t889;
+        let t901 = s6_arm * t889;
+        let t907 = s5_arm * s6_arm;
+        let t912 = t899 * t489 - t901 * t465 + t891 * t500 + t857 * t521 - t907 * t541
             - c5_arm * t559;
-        let t922 = (c7_arm * t896 - s7_arm * t888) * t597
-            + (s7_arm * t896 + c7_arm * t888) * t621 - t898 * t632;
-        let t933 = (c7_arm * t903 + c5_arm * s7_arm) * t653
-            + (c5_arm * c7_arm - s7_arm * t903) * t673 - t905 * t691;
-        let t952 = t427 + joint_velocities[4] * parameters[56]
+        let t924 = (c7_arm * t899 - s7_arm * t891) * t597
+            + (s7_arm * t899 + c7_arm * t891) * t621 - t901 * t632;
+        let t948 = t427 + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
             + parameters[58] + s6_arm * t521 + c6_arm * t541 + s6_arm * c7_arm * t653
             - s6_arm * s7_arm * t673 + c6_arm * t691;
         [
-            t161 + t288 + t430 + t562 + t634 + t693, t720 + t735 + t763 + t787 + t799 + t810,
-            t836 + t855 + t867 + t878, t895 + t910 + t922 + t933, t952,
+            t161 + t288 + t430 + t562 + t634 + t693, t720 + t735 + t763 + t787 + t799 + t810, t883,
+            t898 + t912 + t924 + t860 * t653 + t865 * t673 - t907 * t691, t948,
             t559 + joint_velocities[5] * parameters[70]
                 + ::overact::math::signed(parameters[71], joint_velocities[5])
                 + parameters[72] - (s7_arm * t653 + c7_arm * t673),

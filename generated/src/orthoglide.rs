@@ -391,34 +391,35 @@ impl Orthoglide {
     ///
     /// Output: 12.
     ///
-    /// 36 operations (12 additions, 21 multiplications, 3 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 45 intermediates.
+    /// 33 operations (12 additions, 18 multiplications, 3 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 42 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
-        let t3 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t3 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t3, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t3);
         let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t8 = 1.0 - t7;
         ::overact::guard::reach(t8, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t8);
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t22 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t22, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t22);
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t27 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t27, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t27);
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t41 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t41, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t41);
+        let t21 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t21, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t21);
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t26 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t26, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t26);
+        let t38 = 1.0 - t3 * t7;
+        ::overact::guard::reach(t38, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t38);
         let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t46 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t46, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t46);
+        let t43 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t43, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t43);
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         Ok([
             pose[0] + 0.56 - 0.31 * (c_left_bar_along_x * c_foot_along_x),
@@ -442,32 +443,34 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 33 operations (12 additions, 18 multiplications, 3 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 36 intermediates.
+    /// 31 operations (12 additions, 16 multiplications, 3 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 34 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
-        let t3 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t3, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t3);
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t8, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t8);
-        let t16 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t16, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t16);
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t21 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t21, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t21);
-        let t29 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t29, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t29);
+        let t3 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t3, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t3);
         let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t34 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t34, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t34);
+        let t7 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t9 = 1.0 - t3 * t7;
+        ::overact::guard::reach(t9, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t9);
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t13 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t15 = 1.0 - t9 * t13;
+        ::overact::guard::reach(t15, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t15);
+        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
+        let t20 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t20, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t20);
+        let t26 = 1.0 - t13;
+        ::overact::guard::reach(t26, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t26);
+        let t32 = 1.0 - t7;
+        ::overact::guard::reach(t32, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t32);
         Ok([
             pose[0] + 0.56 - 0.31 * (c_left_bar_along_x * c_foot_along_x),
             pose[1] + 0.56 - 0.31 * (c_left_bar_along_y * c_foot_along_y),
@@ -481,64 +484,53 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 57 operations (9 additions, 39 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 57 intermediates.
+    /// 30 operations (6 additions, 18 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 30 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
         let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
         ::overact::guard::reach(t7, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t9, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t13 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t13;
-        let t22 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t22, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t22);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t27 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t27, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t27);
-        let t29 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t29, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t29;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t34 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t34, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t34);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t39 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t39, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t39);
-        let t41 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t41, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t41;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t13 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        ::overact::guard::reach(t13, "along_x")?;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t46 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t46);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t46;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t55 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t55);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t55;
+        let c_left_bar_along_x = ::overact::math::sqrt(t13);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t17 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t19 = 1.0 - t13 * t17;
+        ::overact::guard::reach(t19, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t19);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t23 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t23, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t23);
+        let t25 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t25, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t25;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t28 = 1.0 - t17;
+        ::overact::guard::reach(t28, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t28);
+        let t30 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t30, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t30;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         Ok([
             [1.0, gdrive_vy_along_x, gdrive_vz_along_x],
@@ -554,7 +546,7 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 42 operations (3 additions, 33 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 48 intermediates.
+    /// 15 operations (0 additions, 12 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 21 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -568,42 +560,21 @@ impl Orthoglide {
         (s_left_bar_along_x, c_left_bar_along_x)] = ::overact::math::sin_cos_all([
             joints[5], joints[6], joints[9], joints[10], joints[1], joints[2],
         ]);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t6 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t6, 1.0, "along_y")?;
-        let t7 = 1.0 / t6;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t7;
-        let t10 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t10);
-        let minus_gdrive_vx_along_y = 0.31 * t4 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t10;
-        let t21 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t22 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t22, 1.0, "along_z")?;
-        let t23 = 1.0 / t22;
-        let minus_gdrive_vx_along_z = t21 * t23;
-        let t29 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t30 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t30, 1.0, "along_x")?;
-        let t31 = 1.0 / t30;
-        let minus_gdrive_vy_along_x = t29 * t31;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t23;
-        let t36 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t36);
-        let minus_gdrive_vy_along_z = 0.31 * t21 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t36;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t31;
-        let t46 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t46);
-        let minus_gdrive_vz_along_x = 0.31 * t29 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t46;
-        let minus_gdrive_vz_along_y = t4 * t7;
+        let t4 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t4, 1.0, "along_y")?;
+        let t5 = 1.0 / t4;
+        let minus_gdrive_vx_along_y = t5 * s_left_bar_along_y;
+        let t12 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t12, 1.0, "along_z")?;
+        let t13 = 1.0 / t12;
+        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z * t13;
+        let t20 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t20, 1.0, "along_x")?;
+        let t21 = 1.0 / t20;
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x * t21;
+        let minus_gdrive_vy_along_z = t13 * s_left_bar_along_z;
+        let minus_gdrive_vz_along_x = t21 * s_left_bar_along_x;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t5;
         Ok([
             [1.0, -minus_gdrive_vy_along_x, -minus_gdrive_vz_along_x],
             [-minus_gdrive_vx_along_y, 1.0, -minus_gdrive_vz_along_y],
@@ -617,102 +588,92 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 134 operations (43 additions, 79 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 131 intermediates.
+    /// 107 operations (40 additions, 58 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 104 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t9, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t13 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t13;
-        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t24, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t24);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t29, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t29);
-        let t31 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t35, 1.0, "actuators")?;
-        let t36 = 1.0 / t35;
-        let t39 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t39, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t39);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t44 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t44, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t44);
-        let t46 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t46, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t46;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t15 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t15, "along_x")?;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t52 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t52);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t52;
-        let t60 = gdrive_vy_along_x + gdrive_vx_along_y
+        let c_left_bar_along_x = ::overact::math::sqrt(t15);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t19 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t21 = 1.0 - t15 * t19;
+        ::overact::guard::reach(t21, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t25 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t25);
+        let t27 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t27, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t27;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t31 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t31, 1.0, "actuators")?;
+        let t32 = 1.0 / t31;
+        let t33 = 1.0 - t19;
+        ::overact::guard::reach(t33, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t33);
+        let t35 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t35, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t35;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t41 = gdrive_vy_along_x + gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t61 = t60 * t36;
-        let t67 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t60 * t61;
-        ::overact::guard::platform(t67, 1.0, "actuators")?;
-        let t68 = 1.0 / t67;
-        let t69 = gdrive_vy_along_x - t61;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t73 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t73);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t73;
+        let t42 = t41 * t32;
+        let t48 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t41 * t42;
+        ::overact::guard::platform(t48, 1.0, "actuators")?;
+        let t49 = 1.0 / t48;
+        let t50 = gdrive_vy_along_x - t42;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t86 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+        let t59 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z;
-        let t87 = t86 * t36;
-        let t89 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t60 * t87;
-        let t90 = t89 * t68;
-        let t98 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t86 * t87 - t89 * t90;
-        ::overact::guard::platform(t98, 1.0, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t103 = t99 * (gdrive_vz_along_x - t87 - t90 * t69);
-        let t105 = t68 * t69 - t90 * t103;
-        let t112 = 1.0 - gdrive_vx_along_y * t61;
-        let t118 = t99 * (gdrive_vz_along_y - gdrive_vx_along_y * t87 - t90 * t112);
-        let t120 = t68 * t112 - t90 * t118;
-        let t127 = gdrive_vy_along_z - gdrive_vx_along_z * t61;
-        let t133 = t99 * (1.0 - gdrive_vx_along_z * t87 - t90 * t127);
-        let t135 = t68 * t127 - t90 * t133;
+        let t60 = t59 * t32;
+        let t62 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t41 * t60;
+        let t63 = t62 * t49;
+        let t71 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t59 * t60 - t62 * t63;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = 1.0 / t71;
+        let t76 = t72 * (gdrive_vz_along_x - t60 - t63 * t50);
+        let t78 = t49 * t50 - t63 * t76;
+        let t85 = 1.0 - gdrive_vx_along_y * t42;
+        let t91 = t72 * (gdrive_vz_along_y - gdrive_vx_along_y * t60 - t63 * t85);
+        let t93 = t49 * t85 - t63 * t91;
+        let t100 = gdrive_vy_along_z - gdrive_vx_along_z * t42;
+        let t106 = t72 * (1.0 - gdrive_vx_along_z * t60 - t63 * t100);
+        let t108 = t49 * t100 - t63 * t106;
         Ok([
             [
-                t36 - t61 * t105 - t87 * t103, gdrive_vx_along_y * t36 - t61 * t120 - t87 * t118,
-                gdrive_vx_along_z * t36 - t61 * t135 - t87 * t133,
+                t32 - t42 * t78 - t60 * t76, gdrive_vx_along_y * t32 - t42 * t93 - t60 * t91,
+                gdrive_vx_along_z * t32 - t42 * t108 - t60 * t106,
             ],
-            [t105, t120, t135],
-            [t103, t118, t133],
+            [t78, t93, t108],
+            [t76, t91, t106],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -723,38 +684,37 @@ impl Orthoglide {
     ///
     /// Output: 12 x 12.
     ///
-    /// 27 operations (0 additions, 27 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 24 intermediates.
+    /// 24 operations (0 additions, 24 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 21 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
         _pose: &[f64; 3],
         joints: &[f64; 12],
     ) -> [[f64; 12]; 12] {
         let [(minus_c_foot_along_x, s_foot_along_x),
-        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
-        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
-        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
+        (s_left_bar_along_x, c_left_bar_along_x),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_y, s_foot_along_y),
+        (minus_c_foot_along_z, s_foot_along_z), (s_left_bar_along_z, c_left_bar_along_z),
+        ] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[6], joints[5], joints[9], joints[10],
         ]);
+        let t4 = 0.31 * c_left_bar_along_x;
+        let t14 = 0.31 * c_left_bar_along_y;
+        let t30 = 0.31 * c_left_bar_along_z;
         [
             [
-                1.0, -(0.31 * (minus_c_foot_along_x * c_left_bar_along_x)),
-                -(0.31 * (s_foot_along_x * s_left_bar_along_x)), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0,
+                1.0, -(minus_c_foot_along_x * t4), -(0.31 * (s_foot_along_x * s_left_bar_along_x)),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, -(0.31 * (s_foot_along_x * c_left_bar_along_x)),
                 0.31 * (minus_c_foot_along_x * s_left_bar_along_x), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
-            [
-                0.0, 0.0, -(0.31 * c_left_bar_along_x), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-            ],
+            [0.0, 0.0, -t4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t14, 0.0, 0.0, 0.0, 0.0, 0.0],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(0.31 * c_left_bar_along_y), 0.0, 0.0, 0.0, 0.0, 0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 1.0, -(0.31 * (minus_c_foot_along_y * c_left_bar_along_y)),
+                0.0, 0.0, 0.0, 0.0, 1.0, -(t14 * minus_c_foot_along_y),
                 -(0.31 * (s_foot_along_y * s_left_bar_along_y)), 0.0, 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -767,12 +727,9 @@ impl Orthoglide {
                 -(0.31 * (s_foot_along_z * c_left_bar_along_z)),
                 0.31 * (minus_c_foot_along_z * s_left_bar_along_z), 0.0,
             ],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t30, 0.0],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(0.31 * c_left_bar_along_z), 0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-                -(0.31 * (minus_c_foot_along_z * c_left_bar_along_z)),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -(minus_c_foot_along_z * t30),
                 -(0.31 * (s_foot_along_z * s_left_bar_along_z)), 0.0,
             ],
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, -1.0],
@@ -806,7 +763,7 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 54 operations (3 additions, 45 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 57 intermediates.
+    /// 27 operations (0 additions, 24 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 30 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -820,49 +777,28 @@ impl Orthoglide {
         (minus_c_foot_along_z, s_foot_along_z)] = ::overact::math::sin_cos_all([
             joints[2], joints[1], joints[6], joints[5], joints[10], joints[9],
         ]);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t4 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t4, 1.0, "along_x")?;
         let t6 = 0.0961 * (c_left_bar_along_x * t4);
         let t11 = s_foot_along_y * c_left_bar_along_y;
         ::overact::guard::leg(t11, 1.0, "along_y")?;
         let t13 = 0.0961 * (c_left_bar_along_y * t11);
-        let t14 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t16 = 1.0 / t11;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t16;
-        let t19 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t19);
-        let minus_gdrive_vx_along_y = 0.31 * t14 * minus_gfoot_vx_along_y
-            + s_foot_along_y * s_left_bar_along_y * t19;
-        let t31 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let t33 = 0.0961 * (c_left_bar_along_z * t31);
-        let t34 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t35 = 1.0 / t31;
-        let minus_gdrive_vx_along_z = t34 * t35;
-        let t38 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t39 = 1.0 / t4;
-        let minus_gdrive_vy_along_x = t38 * t39;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t35;
-        let t45 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t45);
-        let minus_gdrive_vy_along_z = 0.31 * t34 * minus_gfoot_vy_along_z
-            + s_foot_along_z * s_left_bar_along_z * t45;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t39;
-        let t56 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t56);
-        let minus_gdrive_vz_along_x = 0.31 * t38 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t56;
-        let minus_gdrive_vz_along_y = t14 * t16;
+        let t14 = 1.0 / t11;
+        let minus_gdrive_vx_along_y = t14 * s_left_bar_along_y;
+        let t21 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t21, 1.0, "along_z")?;
+        let t23 = 0.0961 * (c_left_bar_along_z * t21);
+        let t25 = 1.0 / t21;
+        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z * t25;
+        let t29 = 1.0 / t4;
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x * t29;
+        let minus_gdrive_vy_along_z = t25 * s_left_bar_along_z;
+        let minus_gdrive_vz_along_x = t29 * s_left_bar_along_x;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t14;
         Ok([
             [-t6, t6 * minus_gdrive_vy_along_x, t6 * minus_gdrive_vz_along_x],
             [t13 * minus_gdrive_vx_along_y, -t13, t13 * minus_gdrive_vz_along_y],
-            [t33 * minus_gdrive_vx_along_z, t33 * minus_gdrive_vy_along_z, -t33],
+            [t23 * minus_gdrive_vx_along_z, t23 * minus_gdrive_vy_along_z, -t23],
         ])
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -903,7 +839,7 @@ impl Orthoglide {
     ///
     /// Output: 12.
     ///
-    /// 84 operations (18 additions, 57 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 81 intermediates.
+    /// 65 operations (15 additions, 44 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 62 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -911,77 +847,70 @@ impl Orthoglide {
         pose: &[f64; 3],
         twist: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t7, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t9, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t16 = 1.0 / c_left_bar_along_x;
+        let t4 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t4;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t7 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t8 = 1.0 - t7;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t10, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
+        let t12 = minus_gfoot_vy_along_x * twist[1];
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let rate_drive_along_x = twist[0] + pose[1] * t12 + gdrive_vz_along_x * twist[2];
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t16);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t16;
-        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
-            + gdrive_vz_along_x * twist[2];
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
-            + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t16;
+            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t4);
+        let minus_rate_foot_along_x = t12 + minus_gfoot_vz_along_x * twist[2];
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t32 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let t25 = 1.0 - t2 * t7;
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t25);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let t27 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t27;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t30 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t32 = 1.0 - t25 * t30;
         ::overact::guard::reach(t32, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t32);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
         let t37 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
         ::overact::guard::reach(t37, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t37);
         let t39 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t39, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t39;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t43 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t43);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t43;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (t37 * gdrive_vx_along_y * gdrive_vz_along_y);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t43;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t62 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t62, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t62);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t67 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t67, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t67);
-        let t69 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t69, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t69;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t54 = 1.0 - t30;
+        ::overact::guard::reach(t54, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t54);
+        let t56 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t56, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t56;
+        let t58 = minus_gfoot_vx_along_z * twist[0];
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let rate_drive_along_z = pose[0] * t58 + gdrive_vy_along_z * twist[1] + twist[2];
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t75 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t75);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t75;
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
-            + gdrive_vy_along_z * twist[1] + twist[2];
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
-            + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t75;
+            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t27);
+        let minus_rate_foot_along_z = t58 + minus_gfoot_vy_along_z * twist[1];
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
         Ok([
             rate_drive_along_x, -minus_rate_foot_along_x, -minus_rate_left_bar_along_x,
@@ -999,7 +928,7 @@ impl Orthoglide {
     ///
     /// Output: 12.
     ///
-    /// 171 operations (51 additions, 111 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 168 intermediates.
+    /// 140 operations (46 additions, 88 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 137 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1008,117 +937,105 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t2, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t8 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t8);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t7, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t9, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t14 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t12 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t13 = 1.0 - t12;
+        ::overact::guard::reach(t13, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t13);
+        let t15 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t15, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t15;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
+            * (gdrive_vy_along_x * (t13 * gdrive_vz_along_x));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
-        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t30 = t21 * t21 + t26 * t26
-            + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
-        let t41 = acceleration[1] + pose[1] * t30 + t38 + t38;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t14;
-        let t52 = acceleration[2]
-            - (minus_rate_foot_along_x * (pose[2] * minus_rate_foot_along_x)
-                - pose[2] * t30);
-        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t9 * t30 + t23)
-            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t52;
+        let t28 = c_foot_along_x * minus_rate_left_bar_along_x
+            * (pose[2] * minus_rate_foot_along_x);
+        let t29 = gdrive_vy_along_x * t28;
+        let t31 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t33 = t31 + minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t41 = acceleration[1] + pose[1] * t33 + t28 + t28;
+        let t45 = acceleration[2] + pose[2] * t31;
+        let rate_dot_drive_along_x = acceleration[0] - (t29 - 0.31 * t15 * t33 + t29)
+            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t45;
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t41
-            + minus_gfoot_vz_along_x * t52;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
-        let t61 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t61, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t61);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t66 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t66, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t66);
-        let t68 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t68, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t68;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t72 = 1.0 / c_left_bar_along_y;
+            + minus_gfoot_vz_along_x * t45;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t45;
+        let t52 = 1.0 - t6;
+        ::overact::guard::reach(t52, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t52);
+        let t54 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t54, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t54;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t72);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t72;
+            * (t52 * gdrive_vx_along_y * gdrive_vz_along_y);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t72;
+        let t64 = minus_rate_foot_along_y * minus_rate_foot_along_y;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t87 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t90 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t92 = minus_rate_foot_along_y * minus_rate_foot_along_y + t87 * t87
-            + t90 * t90;
-        let t95 = acceleration[0]
-            - (minus_rate_foot_along_y * (pose[0] * minus_rate_foot_along_y)
-                - pose[0] * t92);
-        let t98 = pose[0] * (minus_rate_foot_along_y * t87);
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t108 = pose[0] * (minus_rate_foot_along_y * t90);
-        let t111 = acceleration[2] + pose[2] * t92 + t108 + t108;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t95 + acceleration[1]
-            - (t98 - 0.31 * t68 * t92 + t98) + gdrive_vz_along_y * t111;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t95
-            + minus_gfoot_vz_along_y * t111;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t95;
-        let t120 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t120, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t120);
+        let t67 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t70 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t72 = t64 + t67 * t67 + t70 * t70;
+        let t75 = acceleration[0] - (pose[0] * t64 - pose[0] * t72);
+        let t78 = pose[0] * (minus_rate_foot_along_y * t70);
+        let t79 = gdrive_vz_along_y * t78;
+        let t89 = acceleration[2] + pose[2] * t72 + t78 + t78;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t75 + acceleration[1]
+            - (t79 - 0.31 * t54 * t72 + t79) + gdrive_vz_along_y * t89;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t75
+            + minus_gfoot_vz_along_y * t89;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t75;
+        let t97 = 1.0 - t8 * t12;
+        ::overact::guard::reach(t97, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t97);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t125 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t125, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t125);
-        let t127 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t127, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t127;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t102 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t102, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t102);
+        let t104 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t104, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t104;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t130 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t130;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t133 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t108 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t130);
+            * (gdrive_vx_along_z * (t102 * gdrive_vy_along_z));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t144 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t146 = t133 * t133 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t144 * t144;
-        let t149 = pose[1] * (minus_rate_foot_along_z * t133);
-        let t152 = acceleration[0] + pose[0] * t146 + t149 + t149;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t130;
-        let t162 = acceleration[1]
-            - (minus_rate_foot_along_z * (pose[1] * minus_rate_foot_along_z)
-                - pose[1] * t146);
-        let t166 = pose[1] * (minus_rate_foot_along_z * t144);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t152 + gdrive_vy_along_z * t162
-            + acceleration[2] - (t166 - 0.31 * t127 * t146 + t166);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t152
-            + minus_gfoot_vy_along_z * t162;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t162;
+        let t119 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t121 = t108 * t108 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t119 * t119;
+        let t123 = pose[1] * minus_rate_foot_along_z;
+        let t124 = t108 * t123;
+        let t127 = acceleration[0] + pose[0] * t121 + t124 + t124;
+        let t132 = acceleration[1] - (minus_rate_foot_along_z * t123 - pose[1] * t121);
+        let t135 = gdrive_vx_along_z * t124;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t127 + gdrive_vy_along_z * t132
+            + acceleration[2] - (t135 - 0.31 * t104 * t121 + t135);
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t127
+            + minus_gfoot_vy_along_z * t132;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t132;
         Ok([
             rate_dot_drive_along_x, -minus_rate_dot_foot_along_x, -minus_rate_dot_left_bar_along_x,
             minus_rate_dot_foot_along_x, rate_dot_drive_along_y, -minus_rate_dot_foot_along_y,
@@ -1135,7 +1052,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 118 operations (37 additions, 69 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 121 intermediates.
+    /// 91 operations (34 additions, 48 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 94 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1143,89 +1060,79 @@ impl Orthoglide {
         pose: &[f64; 3],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t9, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t13 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t13;
-        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t24, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t24);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t29, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t29);
-        let t31 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t35 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
-            + gdrive_vx_along_z * actuator_velocities[2];
-        let t39 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t39, 1.0, "actuators")?;
-        let t40 = 1.0 / t39;
-        let t44 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t44, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t44);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t49 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t49, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t49);
-        let t51 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t51, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t51;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t15 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t15, "along_x")?;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t57 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t57);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t57;
-        let t65 = gdrive_vy_along_x + gdrive_vx_along_y
+        let c_left_bar_along_x = ::overact::math::sqrt(t15);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t19 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t21 = 1.0 - t15 * t19;
+        ::overact::guard::reach(t21, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t25 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t25);
+        let t27 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t27, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t27;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t31 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+            + gdrive_vx_along_z * actuator_velocities[2];
+        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        let t36 = 1.0 / t35;
+        let t38 = 1.0 - t19;
+        ::overact::guard::reach(t38, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t38);
+        let t40 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t40, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t40;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t46 = gdrive_vy_along_x + gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t66 = t65 * t40;
-        let t72 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t65 * t66;
-        ::overact::guard::platform(t72, 1.0, "actuators")?;
-        let t73 = 1.0 / t72;
-        let t79 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t35 * t66;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t83 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t83);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t83;
+        let t47 = t46 * t36;
+        let t53 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t46 * t47;
+        ::overact::guard::platform(t53, 1.0, "actuators")?;
+        let t54 = 1.0 / t53;
+        let t60 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t31 * t47;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t96 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+        let t69 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z;
-        let t97 = t96 * t40;
-        let t99 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t65 * t97;
-        let t100 = t99 * t73;
-        let t108 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t96 * t97 - t99 * t100;
-        ::overact::guard::platform(t108, 1.0, "actuators")?;
-        let t117 = (gdrive_vz_along_x * actuator_velocities[0]
+        let t70 = t69 * t36;
+        let t72 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t46 * t70;
+        let t73 = t72 * t54;
+        let t89 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t69 * t70 - t72 * t73;
+        ::overact::guard::platform(t89, 1.0, "actuators")?;
+        let t90 = (gdrive_vz_along_x * actuator_velocities[0]
             + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-            - t35 * t97 - t100 * t79) / t108;
-        let t119 = t73 * t79 - t100 * t117;
-        Ok([t35 * t40 - t66 * t119 - t97 * t117, t119, t117])
+            - t31 * t70 - t73 * t60) / t89;
+        let t92 = t54 * t60 - t73 * t90;
+        Ok([t31 * t36 - t47 * t92 - t70 * t90, t92, t90])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1236,7 +1143,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 214 operations (70 additions, 132 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 217 intermediates.
+    /// 165 operations (60 additions, 96 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 168 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1245,135 +1152,113 @@ impl Orthoglide {
         twist: &[f64; 3],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t12 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
         let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t12 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t15 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t17 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t12);
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t17 = gdrive_vy_along_x * gdrive_vz_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t7 * t17);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t28 = t15 * t15 + t17 * t17
-            + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t31 = pose[2] * (minus_rate_foot_along_x * t17);
-        let t36 = pose[2] * (minus_rate_foot_along_x * t15);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t12;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * (pose[1] * t28 + t31 + t31)
-            - (t36 - 0.31 * t9 * t28 + t36)
-            - gdrive_vz_along_x
-                * (minus_rate_foot_along_x * (pose[2] * minus_rate_foot_along_x)
-                    - pose[2] * t28);
-        let t52 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t55 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t55, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t55);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t60 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t60, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t60);
-        let t62 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t62, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t62;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t66 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t66);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t66;
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
-            + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t66;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t80 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t83 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t85 = minus_rate_foot_along_y * minus_rate_foot_along_y + t80 * t80
-            + t83 * t83;
-        let t88 = pose[0] * (minus_rate_foot_along_y * t83);
-        let t98 = pose[0] * (minus_rate_foot_along_y * t80);
-        let t103 = gdrive_vx_along_y
-            * (minus_rate_foot_along_y * (pose[0] * minus_rate_foot_along_y)
-                - pose[0] * t85) + t98 - 0.31 * t62 * t85 + t98;
-        let rate_dot_drive_along_y = gdrive_vz_along_y * (pose[2] * t85 + t88 + t88)
-            - t103;
-        let t105 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let t110 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t110, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t110);
+        let t26 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let rate_dot_drive_along_x = 0.31 * t9
+            * (t12 + minus_rate_foot_along_x * minus_rate_foot_along_x) * t26
+            + gdrive_vz_along_x * (pose[2] * t12);
+        let t31 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t33 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t33, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t33);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t115 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t115, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t115);
-        let t117 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t117, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t117;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t37 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t39 = 1.0 - t33 * t37;
+        ::overact::guard::reach(t39, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t39);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t44 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t44, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t44);
+        let t46 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t46, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t46;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t51 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let minus_rate_foot_along_y = gdrive_vx_along_y * t51
+            + minus_gfoot_vz_along_y * twist[2];
+        let t58 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t60 = minus_rate_foot_along_y * minus_rate_foot_along_y + t51 * t51
+            + t58 * t58;
+        let t62 = pose[0] * minus_rate_foot_along_y;
+        let t63 = t58 * t62;
+        let t71 = gdrive_vz_along_y * t63;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * (pose[2] * t60 + t63 + t63)
+            - (gdrive_vx_along_y * (minus_rate_foot_along_y * t62 - pose[0] * t60) + t71
+                - 0.31 * t46 * t60 + t71);
+        let t78 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let t81 = 1.0 - t37;
+        ::overact::guard::reach(t81, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t81);
+        let t83 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t83, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t83;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t120 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t120;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t123 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t120);
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
-            + minus_gfoot_vy_along_z * twist[1];
-        let t134 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t136 = t123 * t123 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t134 * t134;
-        let t139 = pose[1] * (minus_rate_foot_along_z * t123);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t120;
-        let t152 = gdrive_vx_along_z * (pose[0] * t136 + t139 + t139)
-            - gdrive_vy_along_z
-                * (minus_rate_foot_along_z * (pose[1] * minus_rate_foot_along_z)
-                    - pose[1] * t136);
-        let t154 = pose[1] * (minus_rate_foot_along_z * t134);
-        let rate_dot_drive_along_z = t152 - (t154 - 0.31 * t117 * t136 + t154);
-        let t160 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t162 = t52 + gdrive_vx_along_y * t105 + gdrive_vx_along_z * t160;
-        let t166 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t166, 1.0, "actuators")?;
-        let t167 = 1.0 / t166;
-        let t171 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t172 = t171 * t167;
-        let t178 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t171 * t172;
-        ::overact::guard::platform(t178, 1.0, "actuators")?;
-        let t179 = 1.0 / t178;
-        let t185 = gdrive_vy_along_x * t52 + t105 + gdrive_vy_along_z * t160
-            - t162 * t172;
-        let t192 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+        let t87 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t88 = t87 * t87;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t91 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0] + t87 * t91;
+        let t96 = gdrive_vx_along_z * gdrive_vx_along_z;
+        let t98 = t88 + minus_rate_foot_along_z * minus_rate_foot_along_z + t88 * t96;
+        let t100 = pose[1] * minus_rate_foot_along_z;
+        let t101 = t87 * t100;
+        let t110 = gdrive_vx_along_z * t101;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * (pose[0] * t98 + t101 + t101)
+            - gdrive_vy_along_z * (minus_rate_foot_along_z * t100 - pose[1] * t98)
+            - (t110 - 0.31 * t83 * t98 + t110);
+        let t116 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t118 = t31 + gdrive_vx_along_y * t78 + gdrive_vx_along_z * t116;
+        let t121 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y + t96;
+        ::overact::guard::platform(t121, 1.0, "actuators")?;
+        let t122 = 1.0 / t121;
+        let t125 = gdrive_vy_along_x + gdrive_vx_along_y + t91;
+        let t126 = t125 * t122;
+        let t130 = t26 + gdrive_vy_along_z * gdrive_vy_along_z - t125 * t126;
+        ::overact::guard::platform(t130, 1.0, "actuators")?;
+        let t131 = 1.0 / t130;
+        let t137 = gdrive_vy_along_x * t31 + t78 + gdrive_vy_along_z * t116
+            - t118 * t126;
+        let t143 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z;
-        let t193 = t192 * t167;
-        let t195 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t171 * t193;
-        let t196 = t195 * t179;
-        let t204 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t192 * t193 - t195 * t196;
-        ::overact::guard::platform(t204, 1.0, "actuators")?;
-        let t213 = (gdrive_vz_along_x * t52 + gdrive_vz_along_y * t105 + t160
-            - t162 * t193 - t196 * t185) / t204;
-        let t215 = t179 * t185 - t196 * t213;
-        Ok([t162 * t167 - t172 * t215 - t193 * t213, t215, t213])
+        let t144 = t143 * t122;
+        let t146 = t17 + gdrive_vz_along_y + gdrive_vy_along_z - t125 * t144;
+        let t147 = t146 * t131;
+        let t163 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t143 * t144 - t146 * t147;
+        ::overact::guard::platform(t163, 1.0, "actuators")?;
+        let t164 = (gdrive_vz_along_x * t31 + gdrive_vz_along_y * t78 + t116
+            - t118 * t144 - t147 * t137) / t163;
+        let t166 = t131 * t137 - t147 * t164;
+        Ok([t118 * t122 - t126 * t166 - t144 * t164, t166, t164])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1385,7 +1270,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 564 operations (191 additions, 364 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 455 intermediates.
+    /// 456 operations (156 additions, 294 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 347 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1394,389 +1279,325 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t7, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t9, 1.0, "along_x")?;
-        let t10 = 1.0 / t9;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t15 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t15);
+        let t4 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t4;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t8 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t9 = 1.0 - t8;
+        ::overact::guard::reach(t9, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t9);
+        let t11 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t11, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t11;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t15 = pose[2] * minus_gleft_bar_vz_along_x;
+        let t16 = minus_gleft_bar_vz_along_x * t15;
+        let minus_gfoot_vz_along_x = gdrive_vy_along_x * t16;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t15;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t22 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = pose[2] * (minus_rate_foot_along_x * t22);
-        let t27 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t29 = t22 * t22 + t27 * t27;
-        let t30 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t31 = t29 + t30;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t39 = pose[2] * (minus_rate_foot_along_x * t27);
-        let t42 = acceleration[1] + pose[1] * t31 + t39 + t39;
-        let t46 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t46 * t15;
-        let t49 = pose[2] * minus_rate_foot_along_x;
-        let t50 = minus_rate_foot_along_x * t49;
-        let t53 = acceleration[2] - (t50 - pose[2] * t31);
-        let rate_dot_drive_along_x = acceleration[0] - (t24 - 0.31 * t9 * t31 + t24)
-            + gdrive_vy_along_x * t42 + gdrive_vz_along_x * t53;
-        let t56 = gdrive_vy_along_x * rate_dot_drive_along_x;
-        let t57 = gdrive_vz_along_x * rate_dot_drive_along_x;
+        let t21 = minus_rate_left_bar_along_x * (pose[2] * minus_rate_foot_along_x);
+        let t22 = minus_s_foot_along_x * t21;
+        let t24 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t26 = t24 + t25;
+        let t32 = c_foot_along_x * t21;
+        let t35 = acceleration[1] + pose[1] * t26 + t32 + t32;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t40 = acceleration[2] + pose[2] * t24;
+        let rate_dot_drive_along_x = acceleration[0] - (t22 - 0.31 * t11 * t26 + t22)
+            + gdrive_vy_along_x * t35 + gdrive_vz_along_x * t40;
+        let t43 = gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t44 = gdrive_vz_along_x * rate_dot_drive_along_x;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t42
-            + minus_gfoot_vz_along_x * t53;
-        let t70 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t71 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t74 = c_foot_along_x * t30
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
+            + minus_gfoot_vz_along_x * t40;
+        let t57 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t58 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t61 = c_foot_along_x * t25
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t75 = gdrive_vy_along_x * t74;
-        let t76 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t79 = gdrive_vz_along_x * t74;
-        let t84 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t30;
-        let t86 = c_foot_along_x * rate_dot_drive_along_x;
-        let t88 = gdrive_vy_along_x * t84 + minus_gfoot_vy_along_x * t86;
-        let t91 = gdrive_vz_along_x * t84 + minus_gfoot_vz_along_x * t86;
-        let t92 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t93 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t94 = minus_rate_left_bar_along_x * t93;
-        let t95 = t92 + t94;
-        let t97 = 3.225806451612903 * t49;
-        let t98 = minus_rate_left_bar_along_x * t97;
-        let t100 = minus_s_left_bar_along_x * t95 + c_left_bar_along_x * t98;
-        let t101 = minus_gfoot_vy_along_x * t100;
-        let t104 = minus_gfoot_vz_along_x * t100 - 10.40582726326743 * t50;
-        let t105 = t94 + t95;
-        let t107 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t109 = t98 + t98 - t107;
-        let t111 = c_left_bar_along_x * t105 - minus_s_left_bar_along_x * t109;
-        let t112 = minus_gfoot_vy_along_x * t111;
-        let t115 = 10.40582726326743 * (t49 * t49);
-        let t116 = t93 * t93;
-        let t119 = minus_gfoot_vz_along_x * t111
-            + minus_gleft_bar_vz_along_x * (t115 - t116);
-        let t120 = t97 * t93;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t53;
-        let t122 = t120 + minus_rate_dot_left_bar_along_x;
-        let t126 = minus_s_left_bar_along_x * t122 + c_left_bar_along_x * (t29 - t115);
-        let t127 = minus_gfoot_vy_along_x * t126;
-        let t130 = minus_gfoot_vz_along_x * t126 + minus_gleft_bar_vz_along_x * t92;
-        let t131 = t70 - t101;
-        let t132 = t71 - t104;
-        let t134 = 10.40582726326743 * (t10 * acceleration[2]);
-        let t138 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+        let t62 = c_foot_along_x * rate_dot_drive_along_x;
+        let t63 = minus_gfoot_vy_along_x * t62;
+        let t67 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t68 = minus_gfoot_vz_along_x * t67;
+        let t72 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t25;
+        let t74 = gdrive_vy_along_x * t72 + t63;
+        let t77 = gdrive_vz_along_x * t72 + minus_gfoot_vz_along_x * t62;
+        let t78 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t79 = minus_rate_left_bar_along_x * t78;
+        let t80 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t82 = t79 + t80 + t79;
+        let t83 = minus_s_left_bar_along_x * t82;
+        let t84 = minus_gfoot_vy_along_x * t83;
+        let t86 = t78 * t78;
+        let t87 = t86 * t16;
+        let t88 = minus_gfoot_vz_along_x * t83 - t87;
+        let t91 = t4 * (minus_rate_dot_foot_along_x - t83);
+        let t93 = c_left_bar_along_x * t82 + minus_s_left_bar_along_x * t91;
+        let t94 = minus_gfoot_vy_along_x * t93;
+        let t96 = pose[2] * t87;
+        let t99 = minus_gfoot_vz_along_x * t93
+            + minus_gleft_bar_vz_along_x * (t96 - t86);
+        let t100 = t86 * t15;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
+        let t106 = minus_s_left_bar_along_x * (t100 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t24 - t96);
+        let t107 = minus_gfoot_vy_along_x * t106;
+        let t110 = minus_gfoot_vz_along_x * t106 + minus_gleft_bar_vz_along_x * t80;
+        let t111 = t57 - t84;
+        let t112 = t58 - t88;
+        let t113 = 3.225806451612903 * acceleration[2];
+        let t114 = minus_gfoot_vy_along_x * t113;
+        let t117 = minus_gfoot_vz_along_x * t113
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t139 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t141 = t116 + t29;
-        let t145 = minus_s_foot_along_x * t109 - (t9 * t141 + t46 * t122);
-        let t148 = gdrive_vy_along_x * t145 - 3.225806451612903 * t56;
-        let t155 = minus_s_left_bar_along_x * t86 - 9.81 * c_left_bar_along_x;
-        let t157 = gdrive_vz_along_x * t145
-            - minus_gfoot_vz_along_x * (c_left_bar_along_x * t76)
-            - minus_gleft_bar_vz_along_x * t155;
-        let t164 = t9 * (minus_rate_dot_left_bar_along_x - t120) - t46 * (t115 + t29)
-            - minus_s_foot_along_x * t105;
-        let t166 = minus_s_left_bar_along_x * t76;
-        let t168 = gdrive_vy_along_x * t164 - minus_gfoot_vy_along_x * t166;
-        let t174 = c_left_bar_along_x * t86 + 31.64516129032258 * pose[2];
-        let t176 = gdrive_vz_along_x * t164 - minus_gfoot_vz_along_x * t166
-            + minus_gleft_bar_vz_along_x * t174;
-        let t180 = t76 + 0.31 * t109 - 0.31 * t107;
-        let t197 = c_left_bar_along_x * (t155 - 0.31 * t122)
-            - minus_s_left_bar_along_x * (t174 - 0.31 * t141);
-        let t200 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t200, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t200);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t205 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t205, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t205);
-        let t207 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t207, 1.0, "along_y")?;
-        let t208 = 1.0 / t207;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t208;
+        let t118 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t120 = 3.225806451612903 * (acceleration[0] - rate_dot_drive_along_x);
+        let t123 = gdrive_vy_along_x * t120 - 3.225806451612903 * t43;
+        let t127 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t130 = gdrive_vz_along_x * t120 - c_left_bar_along_x * t68
+            - (-31.64516129032258 + t127 * t63);
+        let t137 = t11 * (minus_rate_dot_left_bar_along_x - t100) - t127 * (t96 + t24)
+            - minus_s_foot_along_x * t82;
+        let t139 = minus_s_left_bar_along_x * t67;
+        let t141 = gdrive_vy_along_x * t137 - minus_gfoot_vy_along_x * t139;
+        let t149 = gdrive_vz_along_x * t137 - minus_gfoot_vz_along_x * t139
+            + minus_gleft_bar_vz_along_x
+                * (c_left_bar_along_x * t62 + 31.64516129032258 * pose[2]);
+        let t151 = t67 - 0.31 * t91;
+        let t159 = -9.81 - acceleration[2];
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t212 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t212);
-        let t216 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t216 * t212;
+        let t162 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t162, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t162);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t167 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t167, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t167);
+        let t169 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t169, 1.0, "along_y")?;
+        let t170 = 1.0 / t169;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t170;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t174 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t176 = acceleration[0] + pose[0] * t174;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t179 = gdrive_vx_along_y * twist[0];
+        let t180 = pose[0] * minus_gleft_bar_vx_along_y;
+        let t181 = minus_s_foot_along_y * t180;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t181;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t222 = pose[0] * minus_rate_foot_along_y;
-        let t223 = minus_rate_foot_along_y * t222;
-        let t224 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t212;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t227 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t230 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t232 = t224 + t227 * t227 + t230 * t230;
-        let t235 = acceleration[0] - (t223 - pose[0] * t232);
-        let t238 = pose[0] * (minus_rate_foot_along_y * t227);
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t248 = pose[0] * (minus_rate_foot_along_y * t230);
-        let t251 = acceleration[2] + pose[2] * t232 + t248 + t248;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t235 + acceleration[1]
-            - (t238 - 0.31 * t207 * t232 + t238) + gdrive_vz_along_y * t251;
-        let t254 = gdrive_vx_along_y * rate_dot_drive_along_y;
-        let t255 = gdrive_vz_along_y * rate_dot_drive_along_y;
-        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
-            + gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t235
-            + minus_gfoot_vz_along_y * t251;
-        let t268 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t269 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t272 = c_foot_along_y * t224
+        let t187 = t179 * (t167 * minus_rate_foot_along_y);
+        let t188 = gdrive_vz_along_y * t187;
+        let t190 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t191 = t190 + t174;
+        let t200 = acceleration[2] + pose[2] * t191 + t187 + t187;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t176 + acceleration[1]
+            - (t188 - 0.31 * t169 * t191 + t188) + gdrive_vz_along_y * t200;
+        let t203 = gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t204 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let rate_drive_along_y = t179 + twist[1] + gdrive_vz_along_y * twist[2];
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t176
+            + minus_gfoot_vz_along_y * t200;
+        let t216 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t217 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t220 = c_foot_along_y * t190
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t273 = gdrive_vx_along_y * t272;
-        let t276 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t279 = gdrive_vz_along_y * t272;
-        let t284 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t224;
-        let t288 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t290 = gdrive_vx_along_y * t284 + minus_gfoot_vx_along_y * t288;
-        let t293 = gdrive_vz_along_y * t284 + minus_gfoot_vz_along_y * t288;
-        let t294 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t295 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t296 = minus_rate_left_bar_along_y * t295;
-        let t297 = t294 + t296;
-        let t299 = 3.225806451612903 * t222;
-        let t300 = minus_rate_left_bar_along_y * t299;
-        let t302 = minus_s_left_bar_along_y * t297 + c_left_bar_along_y * t300;
-        let t305 = minus_gfoot_vx_along_y * t302 - 10.40582726326743 * t223;
-        let t306 = minus_gfoot_vz_along_y * t302;
-        let t307 = t296 + t297;
-        let t309 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t311 = t300 + t300 - t309;
-        let t313 = c_left_bar_along_y * t307 - minus_s_left_bar_along_y * t311;
-        let t316 = 10.40582726326743 * (t222 * t222);
-        let t317 = t295 * t295;
-        let t320 = minus_gfoot_vx_along_y * t313
-            + minus_gleft_bar_vx_along_y * (t316 - t317);
-        let t321 = minus_gfoot_vz_along_y * t313;
-        let t322 = t299 * t295;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t235;
-        let t324 = t322 + minus_rate_dot_left_bar_along_y;
-        let t326 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t329 = minus_s_left_bar_along_y * t324 + c_left_bar_along_y * (t326 - t316);
-        let t332 = minus_gfoot_vx_along_y * t329 + minus_gleft_bar_vx_along_y * t294;
-        let t333 = minus_gfoot_vz_along_y * t329;
-        let t334 = t268 - t305;
-        let t335 = t269 - t306;
-        let t339 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
-            + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t341 = 10.40582726326743 * (t208 * acceleration[0]);
-        let t342 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t348 = minus_s_foot_along_y * t311 - (t207 * (t317 + t326) + t216 * t324);
-        let t350 = c_left_bar_along_y * t276;
-        let t355 = gdrive_vx_along_y * t348 - minus_gfoot_vx_along_y * t350
-            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t288);
-        let t358 = gdrive_vz_along_y * t348 - minus_gfoot_vz_along_y * t350;
-        let t365 = t207 * (minus_rate_dot_left_bar_along_y - t322) - t216 * (t316 + t326)
-            - minus_s_foot_along_y * t307;
-        let t367 = minus_s_left_bar_along_y * t276;
-        let t371 = gdrive_vx_along_y * t365 - minus_gfoot_vx_along_y * t367
-            + 3.225806451612903 * t288;
-        let t374 = gdrive_vz_along_y * t365 - minus_gfoot_vz_along_y * t367;
-        let t379 = t276 + 0.31 * t311 - 0.31 * t309;
-        let t391 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t391, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t391);
+        let t222 = 9.81 - t204;
+        let t223 = c_foot_along_y * t222;
+        let t231 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t190;
+        let t235 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t237 = gdrive_vx_along_y * t231 + minus_gfoot_vx_along_y * t235;
+        let t240 = gdrive_vz_along_y * t231 + minus_gfoot_vz_along_y * t235;
+        let t241 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t242 = minus_rate_left_bar_along_y * t241;
+        let t243 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t245 = t242 + t243 + t242;
+        let t246 = minus_s_left_bar_along_y * t245;
+        let t248 = t241 * t241;
+        let t249 = t248 * t180;
+        let t250 = minus_gleft_bar_vx_along_y * t249;
+        let t251 = minus_gfoot_vx_along_y * t246 - t250;
+        let t252 = minus_gfoot_vz_along_y * t246;
+        let t254 = t217 - t252;
+        let t256 = t254 * (0.31 * c_foot_along_y);
+        let t258 = c_left_bar_along_y * t245 + minus_s_left_bar_along_y * t256;
+        let t260 = pose[0] * t250;
+        let t263 = minus_gfoot_vx_along_y * t258
+            + minus_gleft_bar_vx_along_y * (t260 - t248);
+        let t264 = minus_gfoot_vz_along_y * t258;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t176;
+        let t270 = minus_s_left_bar_along_y * (t249 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t174 - t260);
+        let t273 = minus_gfoot_vx_along_y * t270 + minus_gleft_bar_vx_along_y * t243;
+        let t274 = minus_gfoot_vz_along_y * t270;
+        let t275 = t216 - t251;
+        let t277 = 10.40582726326743 * (t170 * acceleration[0]);
+        let t280 = t181 * t277 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t281 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t283 = 3.225806451612903 * (acceleration[1] - rate_dot_drive_along_y);
+        let t286 = gdrive_vx_along_y * t283 - 3.225806451612903 * t203;
+        let t289 = gdrive_vz_along_y * t283 + 3.225806451612903 * t222;
+        let t297 = t169 * (minus_rate_dot_left_bar_along_y - t249)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t260 + t174)
+            - minus_s_foot_along_y * t245;
+        let t299 = minus_s_left_bar_along_y * t223;
+        let t303 = gdrive_vx_along_y * t297 + minus_gfoot_vx_along_y * t299
+            + 3.225806451612903 * t235;
+        let t306 = gdrive_vz_along_y * t297 + minus_gfoot_vz_along_y * t299;
+        let t308 = t223 + 0.31 * t256;
+        let t317 = 1.0 - t2 * t8;
+        ::overact::guard::reach(t317, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t317);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t396 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t396, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t396);
-        let t398 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t398, 1.0, "along_z")?;
-        let t399 = 1.0 / t398;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t399;
+        let t319 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t319;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t323 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t323, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t323);
+        let t325 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t325, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t325;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t402 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t402;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t405 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t402);
+        let t329 = pose[1] * minus_gleft_bar_vy_along_z;
+        let t330 = minus_gleft_bar_vy_along_z * t329;
+        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t330;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t414 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t416 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t418 = t405 * t405 + t414 + t416 * t416;
-        let t421 = pose[1] * (minus_rate_foot_along_z * t405);
-        let t424 = acceleration[0] + pose[0] * t418 + t421 + t421;
-        let t427 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t427 * t402;
-        let t430 = pose[1] * minus_rate_foot_along_z;
-        let t431 = minus_rate_foot_along_z * t430;
-        let t434 = acceleration[1] - (t431 - pose[1] * t418);
-        let t438 = pose[1] * (minus_rate_foot_along_z * t416);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t424 + gdrive_vy_along_z * t434
-            + acceleration[2] - (t438 - 0.31 * t398 * t418 + t438);
-        let t445 = 9.81 + rate_dot_drive_along_z;
-        let t446 = gdrive_vx_along_z * t445;
-        let t447 = gdrive_vy_along_z * t445;
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
-            + gdrive_vy_along_z * twist[1] + twist[2];
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t424
-            + minus_gfoot_vy_along_z * t434;
-        let t462 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t463 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t466 = c_foot_along_z * t414
+        let t334 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t336 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t337 = t334 + t336;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t340 = gdrive_vy_along_z * twist[1];
+        let t342 = t340 * (t323 * minus_rate_foot_along_z);
+        let t345 = acceleration[0] + pose[0] * t337 + t342 + t342;
+        let t348 = acceleration[1] + pose[1] * t336;
+        let t351 = gdrive_vx_along_z * t342;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t345 + gdrive_vy_along_z * t348
+            + acceleration[2] - (t351 - 0.31 * t325 * t337 + t351);
+        let t358 = 9.81 + rate_dot_drive_along_z;
+        let t359 = gdrive_vx_along_z * t358;
+        let t360 = gdrive_vy_along_z * t358;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t340 + twist[2];
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t345
+            + minus_gfoot_vy_along_z * t348;
+        let t374 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t375 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t378 = c_foot_along_z * t334
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t467 = gdrive_vx_along_z * t466;
-        let t468 = minus_s_foot_along_z * t445;
-        let t471 = gdrive_vy_along_z * t466;
-        let t476 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t414;
-        let t478 = c_foot_along_z * t445;
-        let t480 = gdrive_vx_along_z * t476 + minus_gfoot_vx_along_z * t478;
-        let t483 = gdrive_vy_along_z * t476 + minus_gfoot_vy_along_z * t478;
-        let t484 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t485 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t486 = minus_rate_left_bar_along_z * t485;
-        let t487 = t484 + t486;
-        let t489 = 3.225806451612903 * t430;
-        let t490 = minus_rate_left_bar_along_z * t489;
-        let t492 = minus_s_left_bar_along_z * t487 + c_left_bar_along_z * t490;
-        let t493 = minus_gfoot_vx_along_z * t492;
-        let t496 = minus_gfoot_vy_along_z * t492 - 10.40582726326743 * t431;
-        let t497 = t486 + t487;
-        let t499 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t501 = t490 + t490 - t499;
-        let t503 = c_left_bar_along_z * t497 - minus_s_left_bar_along_z * t501;
-        let t504 = minus_gfoot_vx_along_z * t503;
-        let t507 = 10.40582726326743 * (t430 * t430);
-        let t508 = t485 * t485;
-        let t511 = minus_gfoot_vy_along_z * t503
-            + minus_gleft_bar_vy_along_z * (t507 - t508);
-        let t512 = t489 * t485;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t434;
-        let t514 = t512 + minus_rate_dot_left_bar_along_z;
-        let t516 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t519 = minus_s_left_bar_along_z * t514 + c_left_bar_along_z * (t516 - t507);
-        let t520 = minus_gfoot_vx_along_z * t519;
-        let t523 = minus_gfoot_vy_along_z * t519 + minus_gleft_bar_vy_along_z * t484;
-        let t524 = t462 - t493;
-        let t525 = t463 - t496;
-        let t527 = 10.40582726326743 * (t399 * acceleration[1]);
-        let t531 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+        let t379 = c_foot_along_z * t358;
+        let t380 = minus_gfoot_vx_along_z * t379;
+        let t384 = minus_s_foot_along_z * t358;
+        let t389 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t334;
+        let t391 = gdrive_vx_along_z * t389 + t380;
+        let t394 = gdrive_vy_along_z * t389 + minus_gfoot_vy_along_z * t379;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t396 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t397 = minus_rate_left_bar_along_z * t396;
+        let t398 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t400 = t397 + t398 + t397;
+        let t401 = minus_s_left_bar_along_z * t400;
+        let t402 = minus_gfoot_vx_along_z * t401;
+        let t404 = t396 * t396;
+        let t405 = t404 * t330;
+        let t406 = minus_gfoot_vy_along_z * t401 - t405;
+        let t409 = t319 * (minus_rate_dot_foot_along_z - t401);
+        let t411 = c_left_bar_along_z * t400 + minus_s_left_bar_along_z * t409;
+        let t412 = minus_gfoot_vx_along_z * t411;
+        let t414 = pose[1] * t405;
+        let t417 = minus_gfoot_vy_along_z * t411
+            + minus_gleft_bar_vy_along_z * (t414 - t404);
+        let t418 = t404 * t329;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t348;
+        let t424 = minus_s_left_bar_along_z * (t418 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t336 - t414);
+        let t425 = minus_gfoot_vx_along_z * t424;
+        let t428 = minus_gfoot_vy_along_z * t424 + minus_gleft_bar_vy_along_z * t398;
+        let t429 = t374 - t402;
+        let t430 = t375 - t406;
+        let t431 = 3.225806451612903 * acceleration[1];
+        let t432 = minus_gfoot_vx_along_z * t431;
+        let t435 = minus_gfoot_vy_along_z * t431
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t532 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t538 = minus_s_foot_along_z * t501 - (t398 * (t508 + t516) + t427 * t514);
-        let t541 = gdrive_vx_along_z * t538 - 3.225806451612903 * t446;
-        let t548 = gdrive_vy_along_z * t538
-            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t468)
-            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t478);
-        let t555 = t398 * (minus_rate_dot_left_bar_along_z - t512) - t427 * (t507 + t516)
-            - minus_s_foot_along_z * t497;
-        let t557 = minus_s_left_bar_along_z * t468;
-        let t559 = gdrive_vx_along_z * t555 - minus_gfoot_vx_along_z * t557;
-        let t564 = gdrive_vy_along_z * t555 - minus_gfoot_vy_along_z * t557
-            + 3.225806451612903 * t478;
-        let t568 = t468 + 0.31 * t501 - 0.31 * t499;
+        let t436 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t438 = 3.225806451612903 * (acceleration[2] - rate_dot_drive_along_z);
+        let t441 = gdrive_vx_along_z * t438 - 3.225806451612903 * t359;
+        let t444 = gdrive_vy_along_z * t438 - 3.225806451612903 * t360;
+        let t452 = t325 * (minus_rate_dot_left_bar_along_z - t418)
+            - minus_s_left_bar_along_z * c_foot_along_z * (t414 + t336)
+            - minus_s_foot_along_z * t400;
+        let t454 = minus_s_left_bar_along_z * t384;
+        let t456 = gdrive_vx_along_z * t452 - minus_gfoot_vx_along_z * t454;
+        let t461 = gdrive_vy_along_z * t452 - minus_gfoot_vy_along_z * t454
+            + 3.225806451612903 * t379;
+        let t463 = t384 - 0.31 * t409;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t74, t84,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t145, t164, -t84,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t145, t164, -t84,
-                rate_dot_drive_along_x, 0.0, -t74, -t84, acceleration[0], t254, t254,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t61, t72,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t120, t137, -t72,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t120, t137, -t72,
+                rate_dot_drive_along_x, 0.0, -t61, -t72, acceleration[0], t203, t203,
                 gdrive_vx_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y), gdrive_vx_along_y,
-                t268, -(t273 + minus_gfoot_vx_along_y * t276), t290, t254, t305, -t320, -t332, t334,
-                t339, t342, t355, t371, -t290, t254, t305, -t320, -t332, t334, t339, t342, t355,
-                t371, -t290, t254, t268,
-                minus_gleft_bar_vx_along_y * t223
-                    - (t273 + minus_gfoot_vx_along_y * t379),
-                -(t290 - 0.31 * t332),
-                acceleration[0],
-                t446,
-                gdrive_vx_along_z * rate_dot_drive_along_z,
-                gdrive_vx_along_z * rate_drive_along_z,
-                ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z),
-                gdrive_vx_along_z,
-                t462,
-                -(t467 + minus_gfoot_vx_along_z * t468),
-                t480,
-                t446,
-                t493,
-                -t504,
-                -t520,
-                t524,
-                t527,
-                0.0,
-                t541,
-                t559,
-                -t480,
-                t446,
-                t493,
-                -t504,
-                -t520,
-                t524,
-                t527,
-                0.0,
-                t541,
-                t559,
-                -t480,
-                t446,
-                t462,
-                -(t467 + minus_gfoot_vx_along_z * t568),
-                -(t480 - 0.31 * t520),
-                acceleration[0],
-                acceleration[0],
+                t216, -(gdrive_vx_along_y * t220 - minus_gfoot_vx_along_y * t223), t237, t203, t251,
+                -t263, -t273, t275, t280, t281, t286, t303, -t237, t203, t251, -t263, -t273, t275,
+                t280, t281, t286, t303, -t237, t203, t216, minus_gfoot_vx_along_y * t308,
+                -(t237 - 0.31 * t273), acceleration[0], t359,
+                gdrive_vx_along_z * rate_dot_drive_along_z, gdrive_vx_along_z * rate_drive_along_z,
+                ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), gdrive_vx_along_z,
+                t374, -(gdrive_vx_along_z * (t378 + t380)), t391, t359, t402, -t412, -t425, t429,
+                t432, 0.0, t441, t456, -t391, t359, t402, -t412, -t425, t429, t432, 0.0, t441, t456,
+                -t391, t359, t374, -(minus_gfoot_vx_along_z * t463 - t389), -(t391 - 0.31 * t425),
+                acceleration[0], acceleration[0],
             ],
             [
-                t56, t56, gdrive_vy_along_x * rate_drive_along_x,
+                t43, t43, gdrive_vy_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x), gdrive_vy_along_x,
-                t70, -(t75 + minus_gfoot_vy_along_x * t76), t88, t56, t101, -t112, -t127, t131,
-                t134, 0.0, t148, t168, -t88, t56, t101, -t112, -t127, t131, t134, 0.0, t148, t168,
-                -t88, t56, t70, -(t75 + minus_gfoot_vy_along_x * t180), -(t88 - 0.31 * t127),
+                t57, -(gdrive_vy_along_x * (t61 + t63)), t74, t43, t84, -t94, -t107, t111, t114,
+                0.0, t123, t141, -t74, t43, t84, -t94, -t107, t111, t114, 0.0, t123, t141, -t74,
+                t43, t57, -(minus_gfoot_vy_along_x * t151 - t72), -(t74 - 0.31 * t107),
                 acceleration[1], rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t272, t284,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t348, t365, -t284,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t348, t365, -t284,
-                rate_dot_drive_along_y, 0.0, -t272, -t284, acceleration[1], t447,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t220, t231,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t283, t297, -t231,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t283, t297, -t231,
+                rate_dot_drive_along_y, 0.0, -t220, -t231, acceleration[1], t360,
                 gdrive_vy_along_z * rate_dot_drive_along_z, gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_z,
-                t463, -(t471 + minus_gfoot_vy_along_z * t468), t483, t447, t496, -t511, -t523, t525,
-                t531, t532, t548, t564, -t483, t447, t496, -t511, -t523, t525, t531, t532, t548,
-                t564, -t483, t447, t463,
-                minus_gleft_bar_vy_along_z * t431
-                    - (t471 + minus_gfoot_vy_along_z * t568),
-                -(t483 - 0.31 * t523),
-                acceleration[1],
-                acceleration[1],
+                t375, -(gdrive_vy_along_z * t378 + minus_gfoot_vy_along_z * t384), t394, t360, t406,
+                -t417, -t428, t430, t435, t436, t444, t461, -t394, t360, t406, -t417, -t428, t430,
+                t435, t436, t444, t461, -t394, t360, t375, -(minus_gfoot_vy_along_z * t463),
+                -(t394 - 0.31 * t428), acceleration[1], acceleration[1],
             ],
             [
-                t57, t57, gdrive_vz_along_x * rate_drive_along_x,
+                t44, t44, gdrive_vz_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x), gdrive_vz_along_x,
-                t71, -(t79 + minus_gfoot_vz_along_x * t76), t91, t57, t104, -t119, -t130, t132,
-                t138, t139, t157, t176, -t91, t57, t104, -t119, -t130, t132, t138, t139, t157, t176,
-                -t91, t57, t71,
-                minus_gleft_bar_vz_along_x * t50 - (t79 + minus_gfoot_vz_along_x * t180),
-                -(t91 - 0.31 * t130), -t197, t255, t255, gdrive_vz_along_y * rate_drive_along_y,
+                t58, -(gdrive_vz_along_x * t61 + t68), t77, t44, t88, -t99, -t110, t112, t117, t118,
+                t130, t149, -t77, t44, t88, -t99, -t110, t112, t117, t118, t130, t149, -t77, t44,
+                t58, -(minus_gfoot_vz_along_x * t151), -(t77 - 0.31 * t110), -t159, t204, t204,
+                gdrive_vz_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y), gdrive_vz_along_y,
-                t269, -(t279 + minus_gfoot_vz_along_y * t276), t293, t255, t306, -t321, -t333, t335,
-                t341, 0.0, t358, t374, -t293, t255, t306, -t321, -t333, t335, t341, 0.0, t358, t374,
-                -t293, t255, t269, -(t279 + minus_gfoot_vz_along_y * t379), -(t293 - 0.31 * t333),
-                -t197, t445, rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t466, t476, t445, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t538, t555, -t476, t445, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t538,
-                t555, -t476, t445, 0.0, -t466, -t476, -t197, -t197,
+                t217, -(gdrive_vz_along_y * t220 - minus_gfoot_vz_along_y * t223), t240, t204, t252,
+                -t264, -t274, t254, t277, 0.0, t289, t306, -t240, t204, t252, -t264, -t274, t254,
+                t277, 0.0, t289, t306, -t240, t204, t217, t231 + minus_gfoot_vz_along_y * t308,
+                -(t240 - 0.31 * t274), -t159, t358, rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t378, t389, t358, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t438, t452, -t389, t358, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t438,
+                t452, -t389, t358, 0.0, -t378, -t389, -t159, -t159,
             ],
         ])
     }
@@ -1791,7 +1612,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 549 operations (185 additions, 358 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 446 intermediates.
+    /// 451 operations (150 additions, 295 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 348 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1801,352 +1622,324 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let [(s_left_bar_along_x, c_left_bar_along_x),
-        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        let [(minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
         (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
         ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t2 = 0.31 * s_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t10 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t10);
+        let t4 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t4;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t7 = 0.31 * s_left_bar_along_x;
+        let t8 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t8, 1.0, "along_x")?;
+        let t9 = 1.0 / t8;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t9;
+        let t12 = minus_c_foot_along_x * c_left_bar_along_x;
+        let minus_gdrive_vy_along_x = t12 * t9;
+        let t14 = s_left_bar_along_x * t4;
+        let t15 = minus_gleft_bar_vz_along_x * t14;
+        let minus_gfoot_vz_along_x = minus_gdrive_vy_along_x * t15;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t17 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t2 * (minus_rate_foot_along_x * t17);
-        let t22 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = t17 * t17 + t22 * t22;
-        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t26 = t24 + t25;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t31 * t6;
-        let t33 = 0.31 * t31;
-        let t36 = t2 * (minus_rate_foot_along_x * t22);
-        let t39 = acceleration[1] - (t33 * t26 + t36 + t36);
-        let t43 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t33 * minus_gfoot_vz_along_x + t43 * t10;
-        let t47 = t2 * minus_rate_foot_along_x;
-        let t48 = minus_rate_foot_along_x * t47;
-        let t50 = acceleration[2] - (t2 * t26 - t48);
-        let rate_dot_drive_along_x = acceleration[0] - (t19 - 0.31 * t5 * t26 + t19)
-            - minus_gdrive_vy_along_x * t39 - minus_gdrive_vz_along_x * t50;
-        let t53 = minus_gdrive_vy_along_x * rate_dot_drive_along_x;
-        let t54 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
+        let t20 = minus_rate_left_bar_along_x * (t7 * minus_rate_foot_along_x);
+        let t21 = minus_c_foot_along_x * t20;
+        let t22 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t23 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t25 = 0.31 * (t22 + t23);
+        let t31 = s_foot_along_x * t20;
+        let t34 = acceleration[1] - (t12 * t25 + t31 + t31);
+        let minus_gdrive_vz_along_x = s_left_bar_along_x * t9;
+        let t39 = acceleration[2] - t7 * t22;
+        let rate_dot_drive_along_x = acceleration[0] - (t21 - t8 * t25 + t21)
+            - minus_gdrive_vy_along_x * t34 - minus_gdrive_vz_along_x * t39;
+        let t42 = minus_gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t43 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t39
-            + minus_gfoot_vz_along_x * t50;
-        let t67 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t68 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t71 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t25;
-        let t72 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t74 = minus_gdrive_vy_along_x * t71;
-        let t77 = minus_gdrive_vz_along_x * t71;
-        let t81 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t25;
-        let t82 = s_foot_along_x * rate_dot_drive_along_x;
-        let t85 = minus_gfoot_vy_along_x * t82 - minus_gdrive_vy_along_x * t81;
-        let t88 = minus_gfoot_vz_along_x * t82 - minus_gdrive_vz_along_x * t81;
-        let t89 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t90 = minus_rate_left_bar_along_x * t89;
-        let t91 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t92 = t90 - t91;
-        let t94 = 3.225806451612903 * t47;
-        let t95 = minus_rate_left_bar_along_x * t94;
-        let t97 = s_left_bar_along_x * t92 + c_left_bar_along_x * t95;
-        let t98 = minus_gfoot_vy_along_x * t97;
-        let t101 = 10.40582726326743 * t48 - minus_gfoot_vz_along_x * t97;
-        let t102 = t90 + t92;
-        let t104 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t106 = t95 + t104 + t95;
-        let t108 = c_left_bar_along_x * t102 - s_left_bar_along_x * t106;
-        let t109 = minus_gfoot_vy_along_x * t108;
-        let t112 = 10.40582726326743 * (t47 * t47);
-        let t113 = t89 * t89;
-        let t116 = minus_gfoot_vz_along_x * t108
-            + minus_gleft_bar_vz_along_x * (t112 - t113);
-        let t117 = t94 * t89;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t50;
-        let t119 = t117 - minus_rate_dot_left_bar_along_x;
-        let t123 = s_left_bar_along_x * t119 + c_left_bar_along_x * (t24 - t112);
-        let t124 = minus_gfoot_vy_along_x * t123;
-        let t127 = minus_gleft_bar_vz_along_x * t91 - minus_gfoot_vz_along_x * t123;
-        let t128 = t67 + t98;
-        let t129 = t68 - t101;
-        let t131 = 10.40582726326743 * (t6 * acceleration[2]);
-        let t135 = minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t34
+            + minus_gfoot_vz_along_x * t39;
+        let t56 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t57 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t60 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t23;
+        let t61 = s_foot_along_x * rate_dot_drive_along_x;
+        let t62 = minus_gfoot_vy_along_x * t61;
+        let t65 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t66 = minus_gfoot_vz_along_x * t65;
+        let t71 = s_foot_along_x * minus_rate_dot_foot_along_x
+            + minus_c_foot_along_x * t23;
+        let t73 = t62 - minus_gdrive_vy_along_x * t71;
+        let t76 = minus_gfoot_vz_along_x * t61 - minus_gdrive_vz_along_x * t71;
+        let t77 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t78 = minus_rate_left_bar_along_x * t77;
+        let t79 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t81 = t78 + t78 - t79;
+        let t82 = s_left_bar_along_x * t81;
+        let t83 = minus_gfoot_vy_along_x * t82;
+        let t84 = t77 * t77;
+        let t85 = t84 * t15;
+        let t87 = t85 - minus_gfoot_vz_along_x * t82;
+        let t90 = t4 * (minus_rate_dot_foot_along_x + t82);
+        let t92 = c_left_bar_along_x * t81 - s_left_bar_along_x * t90;
+        let t93 = minus_gfoot_vy_along_x * t92;
+        let t95 = t7 * t85;
+        let t98 = minus_gfoot_vz_along_x * t92
+            + minus_gleft_bar_vz_along_x * (t95 - t84);
+        let t99 = t84 * t14;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t39;
+        let t105 = s_left_bar_along_x * (t99 - minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t22 - t95);
+        let t106 = minus_gfoot_vy_along_x * t105;
+        let t109 = minus_gleft_bar_vz_along_x * t79 - minus_gfoot_vz_along_x * t105;
+        let t110 = t56 + t83;
+        let t111 = t57 - t87;
+        let t112 = 3.225806451612903 * acceleration[2];
+        let t113 = minus_gfoot_vy_along_x * t112;
+        let t116 = minus_gfoot_vz_along_x * t112
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t136 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t138 = t113 + t24;
-        let t142 = minus_c_foot_along_x * t106 - (t5 * t138 + t43 * t119);
-        let t145 = 3.225806451612903 * t53 - minus_gdrive_vy_along_x * t142;
-        let t152 = s_left_bar_along_x * t82 + 9.81 * c_left_bar_along_x;
-        let t154 = minus_gfoot_vz_along_x * (c_left_bar_along_x * t72)
-            - minus_gdrive_vz_along_x * t142 + minus_gleft_bar_vz_along_x * t152;
-        let t161 = t5 * (t117 + minus_rate_dot_left_bar_along_x) + t43 * (t112 + t24)
-            + minus_c_foot_along_x * t102;
-        let t163 = s_left_bar_along_x * t72;
-        let t165 = minus_gdrive_vy_along_x * t161 + minus_gfoot_vy_along_x * t163;
-        let t168 = c_left_bar_along_x * t82 - 9.81 * s_left_bar_along_x;
-        let t173 = minus_gleft_bar_vz_along_x * t168
-            - (minus_gdrive_vz_along_x * t161 + minus_gfoot_vz_along_x * t163);
-        let t177 = 0.31 * t104 + t72 + 0.31 * t106;
-        let t194 = s_left_bar_along_x * (t168 - 0.31 * t138)
-            + c_left_bar_along_x * (0.31 * t119 - t152);
-        let t199 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t200 = 0.31 * t199;
-        let t201 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t201, 1.0, "along_y")?;
-        let t202 = 1.0 / t201;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t202;
-        let t205 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t205);
-        let t209 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t200 * minus_gfoot_vx_along_y + t209 * t205;
-        let t212 = 0.31 * s_left_bar_along_y;
+        let t117 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t119 = 3.225806451612903 * (acceleration[0] - rate_dot_drive_along_x);
+        let t122 = 3.225806451612903 * t42 - minus_gdrive_vy_along_x * t119;
+        let t130 = c_left_bar_along_x * t66 - minus_gdrive_vz_along_x * t119
+            + minus_gleft_bar_vz_along_x
+                * (s_left_bar_along_x * t61 + 9.81 * c_left_bar_along_x);
+        let t138 = t8 * (t99 + minus_rate_dot_left_bar_along_x)
+            + s_foot_along_x * s_left_bar_along_x * (t95 + t22)
+            + minus_c_foot_along_x * t81;
+        let t140 = s_left_bar_along_x * t65;
+        let t142 = minus_gdrive_vy_along_x * t138 + minus_gfoot_vy_along_x * t140;
+        let t150 = minus_gleft_bar_vz_along_x
+            * (c_left_bar_along_x * t61 - 9.81 * s_left_bar_along_x)
+            - (minus_gdrive_vz_along_x * t138 + minus_gfoot_vz_along_x * t140);
+        let t152 = t65 + 0.31 * t90;
+        let t160 = -9.81 - acceleration[2];
+        let t165 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t165, 1.0, "along_y")?;
+        let t166 = 1.0 / t165;
+        let minus_gdrive_vx_along_y = t166 * s_left_bar_along_y;
+        let t168 = s_foot_along_y * s_left_bar_along_y;
+        let t169 = 1.0 / c_left_bar_along_y;
+        let t170 = t168 * t169;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t166;
+        let t173 = t170 * minus_gdrive_vz_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t169;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t166;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t173;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t205;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t218 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t220 = t212 * (minus_rate_foot_along_y * t218);
-        let t222 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t225 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t227 = t222 + t218 * t218 + t225 * t225;
-        let t233 = t212 * minus_rate_foot_along_y;
-        let t234 = minus_rate_foot_along_y * t233;
-        let t236 = acceleration[0] - (t212 * t227 - t234);
-        let minus_gdrive_vz_along_y = t199 * t202;
-        let t242 = t212 * (minus_rate_foot_along_y * t225);
-        let t245 = acceleration[2] - (t200 * t227 + t242 + t242);
-        let rate_dot_drive_along_y = acceleration[1] - (t220 - 0.31 * t201 * t227 + t220)
-            - minus_gdrive_vx_along_y * t236 - minus_gdrive_vz_along_y * t245;
-        let t248 = minus_gdrive_vx_along_y * rate_dot_drive_along_y;
-        let t249 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t181 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t182 = minus_rate_left_bar_along_y * t181;
+        let t183 = 0.31 * t182;
+        let t184 = t173 * t183;
+        let t186 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t187 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t189 = 0.31 * t165 * (t186 + t187);
+        let t193 = 0.31 * s_left_bar_along_y;
+        let t195 = acceleration[0] - t193 * t187;
+        let t199 = t170 * t183;
+        let t202 = acceleration[2] - (t189 * minus_gdrive_vz_along_y + t199 + t199);
+        let rate_dot_drive_along_y = acceleration[1] - (t184 - t189 + t184)
+            - minus_gdrive_vx_along_y * t195 - minus_gdrive_vz_along_y * t202;
+        let t205 = minus_gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t206 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t236
-            + minus_gfoot_vz_along_y * t245;
-        let t262 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t263 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t266 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t270 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t222;
-        let t271 = minus_gdrive_vx_along_y * t270;
-        let t274 = minus_gdrive_vz_along_y * t270;
-        let t278 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t282 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t222;
-        let t284 = minus_gfoot_vx_along_y * t278 - minus_gdrive_vx_along_y * t282;
-        let t287 = minus_gfoot_vz_along_y * t278 - minus_gdrive_vz_along_y * t282;
-        let t289 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t290 = minus_rate_left_bar_along_y * t289;
-        let t291 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t292 = t290 - t291;
-        let t294 = 3.225806451612903 * t233;
-        let t295 = minus_rate_left_bar_along_y * t294;
-        let t297 = s_left_bar_along_y * t292 + c_left_bar_along_y * t295;
-        let t299 = 10.40582726326743 * t234 - minus_gfoot_vx_along_y * t297;
-        let t300 = minus_gfoot_vz_along_y * t297;
-        let t301 = t290 + t292;
-        let t303 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t305 = t295 + t303 + t295;
-        let t307 = c_left_bar_along_y * t301 - s_left_bar_along_y * t305;
-        let t310 = 10.40582726326743 * (t233 * t233);
-        let t311 = t289 * t289;
-        let t314 = minus_gfoot_vx_along_y * t307
-            + minus_gleft_bar_vx_along_y * (t310 - t311);
-        let t315 = minus_gfoot_vz_along_y * t307;
-        let t317 = t294 * t289;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t236;
-        let t319 = t317 - minus_rate_dot_left_bar_along_y;
-        let t321 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t324 = s_left_bar_along_y * t319 + c_left_bar_along_y * (t321 - t310);
-        let t326 = minus_gleft_bar_vx_along_y * t291 - minus_gfoot_vx_along_y * t324;
-        let t327 = minus_gfoot_vz_along_y * t324;
-        let t328 = t262 - t299;
-        let t329 = t263 + t300;
-        let t333 = minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
-            + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t335 = 10.40582726326743 * (t202 * acceleration[0]);
-        let t336 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t337 = c_left_bar_along_y * t266;
-        let t344 = minus_c_foot_along_y * t305 - (t201 * (t311 + t321) + t209 * t319);
-        let t349 = minus_gfoot_vx_along_y * t337 - minus_gdrive_vx_along_y * t344
-            + minus_gleft_bar_vx_along_y * (s_left_bar_along_y * t278);
-        let t352 = minus_gfoot_vz_along_y * t337 - minus_gdrive_vz_along_y * t344;
-        let t360 = t201 * (t317 + minus_rate_dot_left_bar_along_y) + t209 * (t310 + t321)
-            + minus_c_foot_along_y * t301;
-        let t362 = s_left_bar_along_y * t266;
-        let t365 = 3.225806451612903 * t278
-            - (minus_gdrive_vx_along_y * t360 + minus_gfoot_vx_along_y * t362);
-        let t368 = minus_gdrive_vz_along_y * t360 + minus_gfoot_vz_along_y * t362;
-        let t372 = 0.31 * t303 + t266 + 0.31 * t305;
-        let t387 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t388 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t388, 1.0, "along_z")?;
-        let t389 = 1.0 / t388;
-        let minus_gdrive_vx_along_z = t387 * t389;
-        let t391 = 0.31 * s_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t389;
-        let t395 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t395);
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t195
+            + minus_gfoot_vz_along_y * t202;
+        let t219 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t220 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t221 = 9.81 + t206;
+        let t222 = s_foot_along_y * t221;
+        let t226 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t186;
+        let t234 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t238 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t186;
+        let t240 = minus_gfoot_vx_along_y * t234 - minus_gdrive_vx_along_y * t238;
+        let t243 = minus_gfoot_vz_along_y * t234 - minus_gdrive_vz_along_y * t238;
+        let t245 = s_left_bar_along_y * minus_rate_foot_along_y * t181;
+        let t246 = minus_gleft_bar_vx_along_y * t245;
+        let t247 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t249 = t182 + t182 - t247;
+        let t250 = s_left_bar_along_y * t249;
+        let t252 = t246 - minus_gfoot_vx_along_y * t250;
+        let t253 = minus_gfoot_vz_along_y * t250;
+        let t255 = t220 + t253;
+        let t257 = t255 * (0.31 * s_foot_along_y);
+        let t259 = c_left_bar_along_y * t249 - s_left_bar_along_y * t257;
+        let t261 = t193 * t246;
+        let t265 = minus_gfoot_vx_along_y * t259
+            + minus_gleft_bar_vx_along_y * (t261 - t181 * t181);
+        let t266 = minus_gfoot_vz_along_y * t259;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t195;
+        let t273 = s_left_bar_along_y * (t245 - minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t187 - t261);
+        let t275 = minus_gleft_bar_vx_along_y * t247 - minus_gfoot_vx_along_y * t273;
+        let t276 = minus_gfoot_vz_along_y * t273;
+        let t277 = t219 - t252;
+        let t279 = 10.40582726326743 * (t166 * acceleration[0]);
+        let t282 = t173 * t279 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t283 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t285 = 3.225806451612903 * (acceleration[1] - rate_dot_drive_along_y);
+        let t288 = 3.225806451612903 * t205 - minus_gdrive_vx_along_y * t285;
+        let t291 = 3.225806451612903 * t221 - minus_gdrive_vz_along_y * t285;
+        let t299 = t165 * (t245 + minus_rate_dot_left_bar_along_y) + t168 * (t261 + t187)
+            + minus_c_foot_along_y * t249;
+        let t301 = s_left_bar_along_y * t222;
+        let t304 = 3.225806451612903 * t234
+            - (minus_gdrive_vx_along_y * t299 + minus_gfoot_vx_along_y * t301);
+        let t307 = minus_gdrive_vz_along_y * t299 + minus_gfoot_vz_along_y * t301;
+        let t309 = t222 + 0.31 * t257;
+        let t321 = minus_c_foot_along_z * c_left_bar_along_z;
+        let t322 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t322, 1.0, "along_z")?;
+        let t323 = 1.0 / t322;
+        let minus_gdrive_vx_along_z = t321 * t323;
+        let t325 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t325;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t329 = 0.31 * s_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t323;
+        let minus_gdrive_vy_along_z = t323 * s_left_bar_along_z;
+        let t333 = s_foot_along_z * minus_gdrive_vy_along_z;
+        let t334 = minus_gleft_bar_vy_along_z * t333;
+        let minus_gfoot_vy_along_z = minus_gdrive_vx_along_z * t334;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t395;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t402 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t404 = t391 * (minus_rate_foot_along_z * t402);
-        let t406 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t408 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t411 = t406 * t406 + t408 + t402 * t402;
-        let t416 = 0.31 * t387;
-        let t419 = t391 * (minus_rate_foot_along_z * t406);
-        let t422 = acceleration[0] - (t416 * t411 + t419 + t419);
-        let t425 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t416 * minus_gfoot_vy_along_z + t425 * t395;
-        let t429 = t391 * minus_rate_foot_along_z;
-        let t430 = minus_rate_foot_along_z * t429;
-        let t432 = acceleration[1] - (t391 * t411 - t430);
-        let rate_dot_drive_along_z = acceleration[2] - (t404 - 0.31 * t388 * t411 + t404)
-            - (minus_gdrive_vx_along_z * t422 + minus_gdrive_vy_along_z * t432);
-        let t436 = 9.81 + rate_dot_drive_along_z;
-        let t437 = minus_gdrive_vx_along_z * t436;
-        let t438 = minus_gdrive_vy_along_z * t436;
+        let t339 = s_foot_along_z * minus_rate_left_bar_along_z
+            * (t329 * minus_rate_foot_along_z);
+        let t340 = minus_gdrive_vx_along_z * t339;
+        let t341 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t342 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t344 = 0.31 * (t341 + t342);
+        let t352 = acceleration[0] - (t321 * t344 + t339 + t339);
+        let t355 = acceleration[1] - t329 * t342;
+        let rate_dot_drive_along_z = acceleration[2] - (t340 - t322 * t344 + t340)
+            - (minus_gdrive_vx_along_z * t352 + minus_gdrive_vy_along_z * t355);
+        let t359 = 9.81 + rate_dot_drive_along_z;
+        let t360 = minus_gdrive_vx_along_z * t359;
+        let t361 = minus_gdrive_vy_along_z * t359;
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t422
-            + minus_gfoot_vy_along_z * t432;
-        let t453 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t454 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t455 = minus_c_foot_along_z * t436;
-        let t459 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t408;
-        let t460 = minus_gdrive_vx_along_z * t459;
-        let t463 = minus_gdrive_vy_along_z * t459;
-        let t465 = s_foot_along_z * t436;
-        let t469 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t408;
-        let t471 = minus_gfoot_vx_along_z * t465 - minus_gdrive_vx_along_z * t469;
-        let t474 = minus_gfoot_vy_along_z * t465 - minus_gdrive_vy_along_z * t469;
-        let t475 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t476 = minus_rate_left_bar_along_z * t475;
-        let t477 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t478 = t476 - t477;
-        let t480 = 3.225806451612903 * t429;
-        let t481 = minus_rate_left_bar_along_z * t480;
-        let t483 = s_left_bar_along_z * t478 + c_left_bar_along_z * t481;
-        let t484 = minus_gfoot_vx_along_z * t483;
-        let t487 = 10.40582726326743 * t430 - minus_gfoot_vy_along_z * t483;
-        let t488 = t476 + t478;
-        let t490 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t492 = t481 + t490 + t481;
-        let t494 = c_left_bar_along_z * t488 - s_left_bar_along_z * t492;
-        let t495 = minus_gfoot_vx_along_z * t494;
-        let t498 = 10.40582726326743 * (t429 * t429);
-        let t499 = t475 * t475;
-        let t502 = minus_gfoot_vy_along_z * t494
-            + minus_gleft_bar_vy_along_z * (t498 - t499);
-        let t503 = t480 * t475;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t432;
-        let t505 = t503 - minus_rate_dot_left_bar_along_z;
-        let t507 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t510 = s_left_bar_along_z * t505 + c_left_bar_along_z * (t507 - t498);
-        let t511 = minus_gfoot_vx_along_z * t510;
-        let t514 = minus_gleft_bar_vy_along_z * t477 - minus_gfoot_vy_along_z * t510;
-        let t515 = t453 + t484;
-        let t516 = t454 - t487;
-        let t518 = 10.40582726326743 * (t389 * acceleration[1]);
-        let t522 = minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t352
+            + minus_gfoot_vy_along_z * t355;
+        let t376 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t377 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t380 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t341;
+        let t381 = s_foot_along_z * t359;
+        let t382 = minus_gfoot_vx_along_z * t381;
+        let t385 = minus_c_foot_along_z * t359;
+        let t391 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t341;
+        let t393 = t382 - minus_gdrive_vx_along_z * t391;
+        let t396 = minus_gfoot_vy_along_z * t381 - minus_gdrive_vy_along_z * t391;
+        let t397 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t398 = minus_rate_left_bar_along_z * t397;
+        let t399 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t401 = t398 + t398 - t399;
+        let t402 = s_left_bar_along_z * t401;
+        let t403 = minus_gfoot_vx_along_z * t402;
+        let t404 = t397 * t397;
+        let t405 = t404 * t334;
+        let t407 = t405 - minus_gfoot_vy_along_z * t402;
+        let t410 = t325 * (minus_rate_dot_foot_along_z + t402);
+        let t412 = c_left_bar_along_z * t401 - s_left_bar_along_z * t410;
+        let t413 = minus_gfoot_vx_along_z * t412;
+        let t415 = t329 * t405;
+        let t418 = minus_gfoot_vy_along_z * t412
+            + minus_gleft_bar_vy_along_z * (t415 - t404);
+        let t419 = t404 * t333;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t355;
+        let t425 = s_left_bar_along_z * (t419 - minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t342 - t415);
+        let t426 = minus_gfoot_vx_along_z * t425;
+        let t429 = minus_gleft_bar_vy_along_z * t399 - minus_gfoot_vy_along_z * t425;
+        let t430 = t376 + t403;
+        let t431 = t377 - t407;
+        let t432 = 3.225806451612903 * acceleration[1];
+        let t433 = minus_gfoot_vx_along_z * t432;
+        let t436 = minus_gfoot_vy_along_z * t432
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t523 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t530 = minus_c_foot_along_z * t492 - (t388 * (t499 + t507) + t425 * t505);
-        let t532 = 3.225806451612903 * t437 - minus_gdrive_vx_along_z * t530;
-        let t539 = minus_gfoot_vy_along_z * (c_left_bar_along_z * t455)
-            - minus_gdrive_vy_along_z * t530
-            + minus_gleft_bar_vy_along_z * (s_left_bar_along_z * t465);
-        let t546 = t388 * (t503 + minus_rate_dot_left_bar_along_z) + t425 * (t498 + t507)
-            + minus_c_foot_along_z * t488;
-        let t548 = s_left_bar_along_z * t455;
-        let t550 = minus_gdrive_vx_along_z * t546 + minus_gfoot_vx_along_z * t548;
-        let t555 = 3.225806451612903 * t465
-            - (minus_gdrive_vy_along_z * t546 + minus_gfoot_vy_along_z * t548);
-        let t559 = 0.31 * t490 + t455 + 0.31 * t492;
+        let t437 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t440 = 3.225806451612903 * (acceleration[2] - rate_dot_drive_along_z);
+        let t442 = 3.225806451612903 * t360 - minus_gdrive_vx_along_z * t440;
+        let t445 = 3.225806451612903 * t361 - minus_gdrive_vy_along_z * t440;
+        let t453 = t322 * (t419 + minus_rate_dot_left_bar_along_z)
+            + s_foot_along_z * s_left_bar_along_z * (t415 + t342)
+            + minus_c_foot_along_z * t401;
+        let t455 = s_left_bar_along_z * t385;
+        let t457 = minus_gdrive_vx_along_z * t453 + minus_gfoot_vx_along_z * t455;
+        let t462 = 3.225806451612903 * t381
+            - (minus_gdrive_vy_along_z * t453 + minus_gfoot_vy_along_z * t455);
+        let t464 = t385 + 0.31 * t410;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t71, t81,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t142, t161, -t81,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t142, t161, -t81,
-                rate_dot_drive_along_x, 0.0, t71, -t81, acceleration[0], -t248, -t248,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t60, t71,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t119, t138, -t71,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t119, t138, -t71,
+                rate_dot_drive_along_x, 0.0, t60, -t71, acceleration[0], -t205, -t205,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
-                -minus_gdrive_vx_along_y, t262, minus_gfoot_vx_along_y * t266 - t271, t284, -t248,
-                t299, -t314, t326, t328, t333, t336, t349, t365, -t284, -t248, t299, -t314, t326,
-                t328, t333, t336, t349, t365, -t284, -t248, t262,
-                minus_gfoot_vx_along_y * t372 - t271 - minus_gleft_bar_vx_along_y * t234,
-                -(t284 + 0.31 * t326), acceleration[0], -t437,
+                -minus_gdrive_vx_along_y, t219,
+                minus_gfoot_vx_along_y * t222 - minus_gdrive_vx_along_y * t226, t240, -t205, t252,
+                -t265, t275, t277, t282, t283, t288, t304, -t240, -t205, t252, -t265, t275, t277,
+                t282, t283, t288, t304, -t240, -t205, t219, minus_gfoot_vx_along_y * t309,
+                -(t240 + 0.31 * t275), acceleration[0], -t360,
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z),
-                -minus_gdrive_vx_along_z, t453, minus_gfoot_vx_along_z * t455 - t460, t471, -t437,
-                -t484, -t495, -t511, t515, t518, 0.0, t532, -t550, -t471, -t437, -t484, -t495,
-                -t511, t515, t518, 0.0, t532, -t550, -t471, -t437, t453,
-                minus_gfoot_vx_along_z * t559 - t460, -(t471 - 0.31 * t511), acceleration[0],
+                -minus_gdrive_vx_along_z, t376, -(minus_gdrive_vx_along_z * (t380 - t382)), t393,
+                -t360, -t403, -t413, -t426, t430, t433, 0.0, t442, -t457, -t393, -t360, -t403,
+                -t413, -t426, t430, t433, 0.0, t442, -t457, -t393, -t360, t376,
+                t391 + minus_gfoot_vx_along_z * t464, -(t393 - 0.31 * t426), acceleration[0],
                 acceleration[0],
             ],
             [
-                -t53, -t53, -(minus_gdrive_vy_along_x * rate_drive_along_x),
+                -t42, -t42, -(minus_gdrive_vy_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vy_along_x, rate_drive_along_x),
-                -minus_gdrive_vy_along_x, t67, minus_gfoot_vy_along_x * t72 - t74, t85, -t53, -t98,
-                -t109, -t124, t128, t131, 0.0, t145, -t165, -t85, -t53, -t98, -t109, -t124, t128,
-                t131, 0.0, t145, -t165, -t85, -t53, t67, minus_gfoot_vy_along_x * t177 - t74,
-                -(t85 - 0.31 * t124), acceleration[1], rate_dot_drive_along_y,
+                -minus_gdrive_vy_along_x, t56, -(minus_gdrive_vy_along_x * (t60 - t62)), t73, -t42,
+                -t83, -t93, -t106, t110, t113, 0.0, t122, -t142, -t73, -t42, -t83, -t93, -t106,
+                t110, t113, 0.0, t122, -t142, -t73, -t42, t56, t71 + minus_gfoot_vy_along_x * t152,
+                -(t73 - 0.31 * t106), acceleration[1], rate_dot_drive_along_y,
                 rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t270, t282,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t344, t360, -t282,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t344, t360, -t282,
-                rate_dot_drive_along_y, 0.0, t270, -t282, acceleration[1], -t438,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t226, t238,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t285, t299, -t238,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t285, t299, -t238,
+                rate_dot_drive_along_y, 0.0, t226, -t238, acceleration[1], -t361,
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
-                -minus_gdrive_vy_along_z, t454, minus_gfoot_vy_along_z * t455 - t463, t474, -t438,
-                t487, -t502, t514, t516, t522, t523, t539, t555, -t474, -t438, t487, -t502, t514,
-                t516, t522, t523, t539, t555, -t474, -t438, t454,
-                minus_gfoot_vy_along_z * t559 - t463 - minus_gleft_bar_vy_along_z * t430,
-                -(t474 + 0.31 * t514), acceleration[1], acceleration[1],
+                -minus_gdrive_vy_along_z, t377,
+                minus_gfoot_vy_along_z * t385 - minus_gdrive_vy_along_z * t380, t396, -t361, t407,
+                -t418, t429, t431, t436, t437, t445, t462, -t396, -t361, t407, -t418, t429, t431,
+                t436, t437, t445, t462, -t396, -t361, t377, minus_gfoot_vy_along_z * t464,
+                -(t396 + 0.31 * t429), acceleration[1], acceleration[1],
             ],
             [
-                -t54, -t54, -(minus_gdrive_vz_along_x * rate_drive_along_x),
+                -t43, -t43, -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
-                -minus_gdrive_vz_along_x, t68, minus_gfoot_vz_along_x * t72 - t77, t88, -t54, t101,
-                -t116, t127, t129, t135, t136, t154, t173, -t88, -t54, t101, -t116, t127, t129,
-                t135, t136, t154, t173, -t88, -t54, t68,
-                minus_gfoot_vz_along_x * t177 - t77 - minus_gleft_bar_vz_along_x * t48,
-                -(t88 + 0.31 * t127), -t194, -t249, -t249,
+                -minus_gdrive_vz_along_x, t57, t66 - minus_gdrive_vz_along_x * t60, t76, -t43, t87,
+                -t98, t109, t111, t116, t117, t130, t150, -t76, -t43, t87, -t98, t109, t111, t116,
+                t117, t130, t150, -t76, -t43, t57, minus_gfoot_vz_along_x * t152,
+                -(t76 + 0.31 * t109), -t160, -t206, -t206,
                 -(minus_gdrive_vz_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
-                -minus_gdrive_vz_along_y, t263, minus_gfoot_vz_along_y * t266 - t274, t287, -t249,
-                -t300, -t315, -t327, t329, t335, 0.0, t352, -t368, -t287, -t249, -t300, -t315,
-                -t327, t329, t335, 0.0, t352, -t368, -t287, -t249, t263,
-                minus_gfoot_vz_along_y * t372 - t274, -(t287 - 0.31 * t327), -t194, t436,
-                rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t459, t469, t436, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t530, t546, -t469, t436, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t530,
-                t546, -t469, t436, 0.0, t459, -t469, -t194, -t194,
+                -minus_gdrive_vz_along_y, t220,
+                minus_gfoot_vz_along_y * t222 - minus_gdrive_vz_along_y * t226, t243, -t206, -t253,
+                -t266, -t276, t255, t279, 0.0, t291, -t307, -t243, -t206, -t253, -t266, -t276, t255,
+                t279, 0.0, t291, -t307, -t243, -t206, t220, t238 + minus_gfoot_vz_along_y * t309,
+                -(t243 - 0.31 * t276), -t160, t359, rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t380, t391, t359, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t440, t453, -t391, t359, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t440,
+                t453, -t391, t359, 0.0, t380, -t391, -t160, -t160,
             ],
         ])
     }
@@ -2161,7 +1954,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 636 operations (224 additions, 400 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 531 intermediates.
+    /// 519 operations (185 additions, 325 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 414 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2172,493 +1965,364 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t2, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let t4 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t4;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t7 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t9 = 1.0 - t2 * t7;
+        ::overact::guard::reach(t9, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t9);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t7, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t9, 1.0, "along_x")?;
-        let t10 = 1.0 / t9;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
+        let t11 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t11;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t14 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t15 = 1.0 - t14;
+        ::overact::guard::reach(t15, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t15);
+        let t17 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t17, 1.0, "along_x")?;
+        let t18 = 1.0 / t17;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t18;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t13 = gdrive_vy_along_x * actuator_accelerations[0];
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t16 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t16);
-        let t20 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t20 * t16;
+        let t21 = gdrive_vy_along_x * actuator_accelerations[0];
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let t23 = gdrive_vz_along_x * actuator_accelerations[0];
         let t24 = gdrive_vy_along_x * actuator_velocities[0];
         let t25 = gdrive_vz_along_x * actuator_velocities[0];
-        let t33 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t33, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t33);
+        let t32 = 1.0 - t9 * t14;
+        ::overact::guard::reach(t32, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t32);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t34 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t34;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
         let t38 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
         ::overact::guard::reach(t38, "along_z")?;
         let c_foot_along_z = ::overact::math::sqrt(t38);
         let t40 = c_left_bar_along_z * c_foot_along_z;
         ::overact::guard::leg(t40, 1.0, "along_z")?;
-        let t41 = 1.0 / t40;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t41;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t45 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t45);
-        let t49 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t49 * t45;
-        let t56 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t56, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t56);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t61 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t61, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t61);
-        let t63 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t63, 1.0, "along_y")?;
-        let t64 = 1.0 / t63;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t64;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t68 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t68);
-        let t72 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t72 * t68;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t40;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t45 = 1.0 - t7;
+        ::overact::guard::reach(t45, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t45);
+        let t47 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t47, 1.0, "along_y")?;
+        let t48 = 1.0 / t47;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t48;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t78 = gdrive_vy_along_x + gdrive_vx_along_y
+        let t54 = gdrive_vy_along_x + gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t82 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t58 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t82, 1.0, "actuators")?;
-        ::overact::guard::platform(t82, 1.0, "actuators")?;
-        let t83 = 1.0 / t82;
-        let t84 = t78 * t83;
-        let t86 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t78 * t84;
-        ::overact::guard::platform(t86, 1.0, "actuators")?;
-        ::overact::guard::platform(t86, 1.0, "actuators")?;
-        let t87 = 1.0 / t86;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t16;
+        ::overact::guard::platform(t58, 1.0, "actuators")?;
+        ::overact::guard::platform(t58, 1.0, "actuators")?;
+        let t59 = 1.0 / t58;
+        let t60 = t54 * t59;
+        let t62 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t54 * t60;
+        ::overact::guard::platform(t62, 1.0, "actuators")?;
+        ::overact::guard::platform(t62, 1.0, "actuators")?;
+        let t63 = 1.0 / t62;
+        let t65 = gdrive_vy_along_z * actuator_velocities[2];
+        let t67 = gdrive_vx_along_y * actuator_velocities[1];
+        let t69 = gdrive_vx_along_z * actuator_velocities[2];
+        let t70 = actuator_velocities[0] + t67 + t69;
+        let t72 = t24 + actuator_velocities[1] + t65 - t70 * t60;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t96 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z;
-        let t97 = t96 * t83;
-        let t104 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t78 * t97;
-        let t105 = t104 * t87;
-        let t107 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t96 * t97 - t104 * t105;
-        ::overact::guard::platform(t107, 1.0, "actuators")?;
-        ::overact::guard::platform(t107, 1.0, "actuators")?;
-        let t108 = 1.0 / t107;
-        let t109 = gdrive_vz_along_y * actuator_velocities[1];
-        let t112 = gdrive_vx_along_y * actuator_velocities[1];
-        let t114 = gdrive_vx_along_z * actuator_velocities[2];
-        let t115 = actuator_velocities[0] + t112 + t114;
-        let t119 = gdrive_vy_along_z * actuator_velocities[2];
-        let t122 = t24 + actuator_velocities[1] + t119 - t115 * t84;
-        let t125 = t108
-            * (t25 + t109 + actuator_velocities[2] - t115 * t97 - t105 * t122);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t125;
-        let t127 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t129 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t131 = t127 * t127 + t129 * t129;
-        let t134 = t87 * t122 - t105 * t125;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t134
-            + minus_gfoot_vz_along_x * t125;
-        let t138 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t139 = t131 + t138;
-        let t142 = pose[2] * (minus_rate_foot_along_x * t129);
-        let t144 = pose[1] * t139 + t142 + t142;
-        let t147 = pose[2] * (minus_rate_foot_along_x * t127);
-        let t153 = pose[2] * minus_rate_foot_along_x;
-        let t154 = minus_rate_foot_along_x * t153;
-        let t156 = t154 - pose[2] * t139;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * t144
-            - (t147 - 0.31 * t9 * t139 + t147) - gdrive_vz_along_x * t156;
-        let t159 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t165 = t115 * t83 - t84 * t134 - t97 * t125;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t165
-            + minus_gfoot_vz_along_y * t125;
-        let t169 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t68;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t165;
-        let t172 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t175 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t177 = t169 + t172 * t172 + t175 * t175;
-        let t180 = pose[0] * (minus_rate_foot_along_y * t175);
-        let t182 = pose[2] * t177 + t180 + t180;
-        let t184 = pose[0] * minus_rate_foot_along_y;
-        let t185 = minus_rate_foot_along_y * t184;
-        let t187 = t185 - pose[0] * t177;
-        let t190 = pose[0] * (minus_rate_foot_along_y * t172);
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t182
-            - (gdrive_vx_along_y * t187 + t190 - 0.31 * t63 * t177 + t190);
-        let t197 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t45;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t134;
-        let t201 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t165
-            + minus_gfoot_vy_along_z * t134;
-        let t206 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t208 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t210 = t201 * t201 + t206 + t208 * t208;
-        let t213 = pose[1] * (minus_rate_foot_along_z * t201);
-        let t215 = pose[0] * t210 + t213 + t213;
-        let t217 = pose[1] * minus_rate_foot_along_z;
-        let t218 = minus_rate_foot_along_z * t217;
-        let t220 = t218 - pose[1] * t210;
-        let t224 = pose[1] * (minus_rate_foot_along_z * t208);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t215 - gdrive_vy_along_z * t220
-            - (t224 - 0.31 * t40 * t210 + t224);
-        let t230 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t236 = t159 + gdrive_vx_along_y * t197 + gdrive_vx_along_z * t230;
-        let t238 = gdrive_vy_along_x * t159 + t197 + gdrive_vy_along_z * t230
-            - t84 * t236;
-        let t248 = t108
-            * (gdrive_vz_along_x * t159 + gdrive_vz_along_y * t197 + t230 - t97 * t236
-                - t105 * t238);
-        let t250 = t87 * t238 - t105 * t248;
-        let t253 = t248 - t156;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t250 + t144)
-            + minus_gfoot_vz_along_x * t253;
-        let t256 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t257 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t260 = c_foot_along_x * t138
+        let t78 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t80 = gdrive_vz_along_x + t78 + gdrive_vx_along_z;
+        let t81 = t80 * t59;
+        let t83 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t54 * t81;
+        let t84 = t83 * t63;
+        let t92 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t80 * t81 - t83 * t84;
+        ::overact::guard::platform(t92, 1.0, "actuators")?;
+        ::overact::guard::platform(t92, 1.0, "actuators")?;
+        let t93 = 1.0 / t92;
+        let t94 = gdrive_vz_along_y * actuator_velocities[1];
+        let t101 = t93 * (t25 + t94 + actuator_velocities[2] - t70 * t81 - t84 * t72);
+        let t103 = t63 * t72 - t84 * t101;
+        let minus_gfoot_vz_along_x = minus_gleft_bar_vz_along_x
+            * (minus_s_foot_along_x * gdrive_vz_along_x);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t103
+            + minus_gfoot_vz_along_x * t101;
+        let t109 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t101;
+        let t111 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t112 = pose[2] * minus_rate_foot_along_x;
+        let t114 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t115 = 3.225806451612903 * t112 * t114;
+        let t116 = minus_gleft_bar_vz_along_x * t115;
+        let t117 = pose[2] * t116;
+        let t118 = t111 - t117;
+        let t119 = t109 + t118;
+        let rate_dot_drive_along_x = t119 * (0.31 * t18);
+        let t122 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t124 = t45 * t78;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t124;
+        let t130 = t70 * t59 - t60 * t103 - t81 * t101;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t130
+            + minus_gfoot_vz_along_y * t101;
+        let t134 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t135 = t134 * t134;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t130;
+        let t137 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let rate_dot_drive_along_y = (t135 + t137) * (0.31 * t48);
+        let t141 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let t144 = pose[1] * minus_gleft_bar_vy_along_z;
+        let t145 = minus_gleft_bar_vy_along_z * t144;
+        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t145;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t130
+            + minus_gfoot_vy_along_z * t103;
+        let t149 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t103;
+        let t151 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t152 = t149 + t151;
+        let t156 = c_foot_along_z * minus_rate_left_bar_along_z
+            * (pose[1] * minus_rate_foot_along_z);
+        let t158 = pose[0] * t152 + t156 + t156;
+        let t160 = pose[1] * t151;
+        let t163 = gdrive_vx_along_z * t156;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t158 + gdrive_vy_along_z * t160
+            - (t163 - 0.31 * t40 * t152 + t163);
+        let t169 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t175 = t122 + gdrive_vx_along_y * t141 + gdrive_vx_along_z * t169;
+        let t177 = gdrive_vy_along_x * t122 + t141 + gdrive_vy_along_z * t169
+            - t60 * t175;
+        let t187 = t93
+            * (gdrive_vz_along_x * t122 + gdrive_vz_along_y * t141 + t169 - t81 * t175
+                - t84 * t177);
+        let t189 = t63 * t177 - t84 * t187;
+        let t193 = c_foot_along_x * minus_rate_left_bar_along_x * t112;
+        let t199 = t187 + pose[2] * t111;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t189 + pose[1] * (t111 + t109) + t193 + t193)
+            + minus_gfoot_vz_along_x * t199;
+        let t202 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t203 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t206 = c_foot_along_x * t109
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t261 = gdrive_vy_along_x * t260;
-        let t262 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t265 = gdrive_vz_along_x * t260;
-        let t270 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t138;
-        let t272 = c_foot_along_x * actuator_accelerations[0];
-        let t274 = gdrive_vy_along_x * t270 + minus_gfoot_vy_along_x * t272;
-        let t277 = gdrive_vz_along_x * t270 + minus_gfoot_vz_along_x * t272;
-        let t278 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t279 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t280 = minus_rate_left_bar_along_x * t279;
-        let t281 = t278 + t280;
-        let t283 = 3.225806451612903 * t153;
-        let t284 = minus_rate_left_bar_along_x * t283;
-        let t286 = minus_s_left_bar_along_x * t281 + c_left_bar_along_x * t284;
-        let t287 = minus_gfoot_vy_along_x * t286;
-        let t290 = minus_gfoot_vz_along_x * t286 - 10.40582726326743 * t154;
-        let t291 = t280 + t281;
-        let t293 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t295 = t284 + t284 - t293;
-        let t297 = c_left_bar_along_x * t291 - minus_s_left_bar_along_x * t295;
-        let t298 = minus_gfoot_vy_along_x * t297;
-        let t301 = 10.40582726326743 * (t153 * t153);
-        let t305 = minus_gfoot_vz_along_x * t297
-            + minus_gleft_bar_vz_along_x * (t301 - t279 * t279);
-        let t306 = t283 * t279;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t253;
-        let t308 = t306 + minus_rate_dot_left_bar_along_x;
-        let t312 = minus_s_left_bar_along_x * t308 + c_left_bar_along_x * (t131 - t301);
-        let t313 = minus_gfoot_vy_along_x * t312;
-        let t316 = minus_gfoot_vz_along_x * t312 + minus_gleft_bar_vz_along_x * t278;
-        let t317 = t256 - t287;
-        let t318 = t257 - t290;
-        let t320 = 10.40582726326743 * (t10 * t248);
-        let t324 = minus_gfoot_vz_along_x * (3.225806451612903 * t248)
+        let t207 = gdrive_vy_along_x * t206;
+        let t208 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t212 = minus_gfoot_vz_along_x * t208;
+        let t216 = t18 * (c_left_bar_along_x * minus_rate_dot_foot_along_x) - t207;
+        let t218 = c_foot_along_x * actuator_accelerations[0];
+        let t219 = minus_gfoot_vy_along_x * t218;
+        let t220 = gdrive_vy_along_x * t216 + t219;
+        let t223 = gdrive_vz_along_x * t216 + minus_gfoot_vz_along_x * t218;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t225 = minus_rate_left_bar_along_x * t114;
+        let t226 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t228 = t225 + t226 + t225;
+        let t229 = minus_s_left_bar_along_x * t228;
+        let t230 = minus_gfoot_vy_along_x * t229;
+        let t232 = minus_gfoot_vz_along_x * t229 - t116;
+        let t235 = t11 * (minus_rate_dot_foot_along_x - t229);
+        let t237 = c_left_bar_along_x * t228 + minus_s_left_bar_along_x * t235;
+        let t238 = minus_gfoot_vy_along_x * t237;
+        let t240 = t117 + t111;
+        let t243 = minus_gfoot_vz_along_x * t237
+            + minus_gleft_bar_vz_along_x * (t240 - t119);
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t199;
+        let t248 = minus_s_left_bar_along_x * (t115 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * t118;
+        let t249 = minus_gfoot_vy_along_x * t248;
+        let t252 = minus_gfoot_vz_along_x * t248 + minus_gleft_bar_vz_along_x * t226;
+        let t253 = t202 - t230;
+        let t254 = t203 - t232;
+        let t255 = 3.225806451612903 * t187;
+        let t256 = minus_gfoot_vy_along_x * t255;
+        let t259 = minus_gfoot_vz_along_x * t255
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t325 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t328 = c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x);
-        let t333 = minus_s_foot_along_x * t295
-            - (t9 * (3.225806451612903 * t328) + t20 * t308);
-        let t336 = gdrive_vy_along_x * t333 - 3.225806451612903 * t13;
-        let t343 = minus_s_left_bar_along_x * t272 - 9.81 * c_left_bar_along_x;
-        let t345 = gdrive_vz_along_x * t333
-            - minus_gfoot_vz_along_x * (c_left_bar_along_x * t262)
-            - minus_gleft_bar_vz_along_x * t343;
-        let t352 = t9 * (minus_rate_dot_left_bar_along_x - t306) - t20 * (t301 + t131)
-            - minus_s_foot_along_x * t291;
-        let t354 = minus_s_left_bar_along_x * t262;
-        let t356 = gdrive_vy_along_x * t352 - minus_gfoot_vy_along_x * t354;
-        let t362 = c_left_bar_along_x * t272 + 31.64516129032258 * pose[2];
-        let t364 = gdrive_vz_along_x * t352 - minus_gfoot_vz_along_x * t354
-            + minus_gleft_bar_vz_along_x * t362;
-        let t368 = t262 + 0.31 * t295 - 0.31 * t293;
-        let t383 = t83 * t236 - t84 * t250 - t97 * t248;
-        let t389 = c_left_bar_along_x * (t343 - 0.31 * t308)
-            - minus_s_left_bar_along_x * (t362 - t328);
-        let t390 = gdrive_vx_along_y * actuator_accelerations[1];
-        let t391 = gdrive_vz_along_y * actuator_accelerations[1];
-        let t395 = t383 - t187;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t395
-            + minus_gfoot_vz_along_y * (t248 + t182);
-        let t400 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t401 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t404 = c_foot_along_y * t169
+        let t260 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t265 = t59 * t175 - t60 * t189 - t81 * t187;
+        let t267 = 3.225806451612903 * (actuator_accelerations[0] - t265);
+        let t270 = gdrive_vy_along_x * t267 + 3.225806451612903 * t21;
+        let t274 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t277 = gdrive_vz_along_x * t267 + c_left_bar_along_x * t212
+            + -31.64516129032258 + t274 * t219;
+        let t283 = t17 * (minus_rate_dot_left_bar_along_x - t115) - t274 * t240
+            - minus_s_foot_along_x * t228;
+        let t285 = minus_s_left_bar_along_x * t208;
+        let t287 = gdrive_vy_along_x * t283 - minus_gfoot_vy_along_x * t285;
+        let t295 = gdrive_vz_along_x * t283 - minus_gfoot_vz_along_x * t285
+            + minus_gleft_bar_vz_along_x
+                * (c_left_bar_along_x * t218 + 31.64516129032258 * pose[2]);
+        let t297 = t208 - 0.31 * t235;
+        let t305 = -9.81 - t187;
+        let t306 = gdrive_vx_along_y * actuator_accelerations[1];
+        let t307 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t312 = t265 + pose[0] * t137;
+        let t314 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t318 = pose[0] * minus_rate_foot_along_y;
+        let t319 = c_foot_along_y * minus_rate_left_bar_along_y * t318;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t312
+            + minus_gfoot_vz_along_y * (t187 + pose[2] * (t314 + t137) + t319 + t319);
+        let t325 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t326 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t329 = c_foot_along_y * t314
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t405 = gdrive_vx_along_y * t404;
-        let t408 = minus_s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * c_foot_along_y;
-        let t411 = gdrive_vz_along_y * t404;
-        let t416 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t169;
-        let t420 = 9.81 * minus_s_foot_along_y
+        let t331 = 9.81 - t307;
+        let t332 = c_foot_along_y * t331;
+        let t340 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t314;
+        let t344 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t422 = gdrive_vx_along_y * t416 + minus_gfoot_vx_along_y * t420;
-        let t425 = gdrive_vz_along_y * t416 + minus_gfoot_vz_along_y * t420;
-        let t426 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t427 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t428 = minus_rate_left_bar_along_y * t427;
-        let t429 = t426 + t428;
-        let t431 = 3.225806451612903 * t184;
-        let t432 = minus_rate_left_bar_along_y * t431;
-        let t434 = minus_s_left_bar_along_y * t429 + c_left_bar_along_y * t432;
-        let t437 = minus_gfoot_vx_along_y * t434 - 10.40582726326743 * t185;
-        let t438 = minus_gfoot_vz_along_y * t434;
-        let t439 = t428 + t429;
-        let t441 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t443 = t432 + t432 - t441;
-        let t445 = c_left_bar_along_y * t439 - minus_s_left_bar_along_y * t443;
-        let t448 = 10.40582726326743 * (t184 * t184);
-        let t449 = t427 * t427;
-        let t452 = minus_gfoot_vx_along_y * t445
-            + minus_gleft_bar_vx_along_y * (t448 - t449);
-        let t453 = minus_gfoot_vz_along_y * t445;
-        let t454 = t431 * t427;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t395;
-        let t456 = t454 + minus_rate_dot_left_bar_along_y;
-        let t458 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t461 = minus_s_left_bar_along_y * t456 + c_left_bar_along_y * (t458 - t448);
-        let t464 = minus_gfoot_vx_along_y * t461 + minus_gleft_bar_vx_along_y * t426;
-        let t465 = minus_gfoot_vz_along_y * t461;
-        let t466 = t400 - t437;
-        let t467 = t401 - t438;
-        let t471 = minus_gfoot_vx_along_y * (3.225806451612903 * t383)
-            + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t473 = 10.40582726326743 * (t64 * t383);
-        let t474 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t480 = minus_s_foot_along_y * t443 - (t63 * (t449 + t458) + t72 * t456);
-        let t482 = c_left_bar_along_y * t408;
-        let t487 = gdrive_vx_along_y * t480 - minus_gfoot_vx_along_y * t482
-            - minus_gleft_bar_vx_along_y * (minus_s_left_bar_along_y * t420);
-        let t490 = gdrive_vz_along_y * t480 - minus_gfoot_vz_along_y * t482;
-        let t497 = t63 * (minus_rate_dot_left_bar_along_y - t454) - t72 * (t448 + t458)
-            - minus_s_foot_along_y * t439;
-        let t499 = minus_s_left_bar_along_y * t408;
-        let t503 = gdrive_vx_along_y * t497 - minus_gfoot_vx_along_y * t499
-            + 3.225806451612903 * t420;
-        let t506 = gdrive_vz_along_y * t497 - minus_gfoot_vz_along_y * t499;
-        let t511 = t408 + 0.31 * t443 - 0.31 * t441;
-        let t521 = 9.81 + actuator_accelerations[2];
-        let t522 = gdrive_vx_along_z * t521;
-        let t523 = gdrive_vy_along_z * t521;
-        let t531 = t250 - t220;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t383 + t215)
-            + minus_gfoot_vy_along_z * t531;
-        let t534 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t535 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t538 = c_foot_along_z * t206
+        let t346 = gdrive_vx_along_y * t340 + minus_gfoot_vx_along_y * t344;
+        let t349 = gdrive_vz_along_y * t340 + minus_gfoot_vz_along_y * t344;
+        let t350 = minus_rate_left_bar_along_y * t134;
+        let t351 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t353 = t350 + t351 + t350;
+        let t354 = minus_s_left_bar_along_y * t353;
+        let t357 = 3.225806451612903 * t318 * t134;
+        let t358 = minus_gleft_bar_vx_along_y * t357;
+        let t359 = minus_gfoot_vx_along_y * t354 - t358;
+        let t360 = minus_gfoot_vz_along_y * t354;
+        let t363 = t4 * (minus_rate_dot_foot_along_y - t354);
+        let t365 = c_left_bar_along_y * t353 + minus_s_left_bar_along_y * t363;
+        let t367 = pose[0] * t358;
+        let t370 = minus_gfoot_vx_along_y * t365
+            + minus_gleft_bar_vx_along_y * (t367 - t135);
+        let t371 = minus_gfoot_vz_along_y * t365;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t312;
+        let t377 = minus_s_left_bar_along_y * (t357 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t137 - t367);
+        let t380 = minus_gfoot_vx_along_y * t377 + minus_gleft_bar_vx_along_y * t351;
+        let t381 = minus_gfoot_vz_along_y * t377;
+        let t382 = t325 - t359;
+        let t383 = t326 - t360;
+        let t385 = 10.40582726326743 * (t48 * t265);
+        let t388 = t124 * t385 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t389 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t391 = 3.225806451612903 * (actuator_accelerations[1] - t189);
+        let t394 = gdrive_vx_along_y * t391 + 3.225806451612903 * t306;
+        let t397 = 3.225806451612903 * t331 - gdrive_vz_along_y * t391;
+        let t405 = t47 * (minus_rate_dot_left_bar_along_y - t357)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t367 + t137)
+            - minus_s_foot_along_y * t353;
+        let t407 = minus_s_left_bar_along_y * t332;
+        let t411 = gdrive_vx_along_y * t405 + minus_gfoot_vx_along_y * t407
+            + 3.225806451612903 * t344;
+        let t414 = gdrive_vz_along_y * t405 + minus_gfoot_vz_along_y * t407;
+        let t416 = t332 + 0.31 * t363;
+        let t424 = 9.81 + actuator_accelerations[2];
+        let t425 = gdrive_vx_along_z * t424;
+        let t426 = gdrive_vy_along_z * t424;
+        let t434 = t189 + t160;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t265 + t158)
+            + minus_gfoot_vy_along_z * t434;
+        let t437 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t438 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t441 = c_foot_along_z * t149
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t539 = gdrive_vx_along_z * t538;
-        let t540 = minus_s_foot_along_z * t521;
-        let t543 = gdrive_vy_along_z * t538;
-        let t548 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t206;
-        let t550 = c_foot_along_z * t521;
-        let t552 = gdrive_vx_along_z * t548 + minus_gfoot_vx_along_z * t550;
-        let t555 = gdrive_vy_along_z * t548 + minus_gfoot_vy_along_z * t550;
-        let t556 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t557 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t558 = minus_rate_left_bar_along_z * t557;
-        let t559 = t556 + t558;
-        let t561 = 3.225806451612903 * t217;
-        let t562 = minus_rate_left_bar_along_z * t561;
-        let t564 = minus_s_left_bar_along_z * t559 + c_left_bar_along_z * t562;
-        let t565 = minus_gfoot_vx_along_z * t564;
-        let t568 = minus_gfoot_vy_along_z * t564 - 10.40582726326743 * t218;
-        let t569 = t558 + t559;
-        let t571 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t573 = t562 + t562 - t571;
-        let t575 = c_left_bar_along_z * t569 - minus_s_left_bar_along_z * t573;
-        let t576 = minus_gfoot_vx_along_z * t575;
-        let t579 = 10.40582726326743 * (t217 * t217);
-        let t580 = t557 * t557;
-        let t583 = minus_gfoot_vy_along_z * t575
-            + minus_gleft_bar_vy_along_z * (t579 - t580);
-        let t584 = t561 * t557;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t531;
-        let t586 = t584 + minus_rate_dot_left_bar_along_z;
-        let t588 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t591 = minus_s_left_bar_along_z * t586 + c_left_bar_along_z * (t588 - t579);
-        let t592 = minus_gfoot_vx_along_z * t591;
-        let t595 = minus_gfoot_vy_along_z * t591 + minus_gleft_bar_vy_along_z * t556;
-        let t596 = t534 - t565;
-        let t597 = t535 - t568;
-        let t599 = 10.40582726326743 * (t41 * t250);
-        let t603 = minus_gfoot_vy_along_z * (3.225806451612903 * t250)
+        let t442 = c_foot_along_z * t424;
+        let t443 = minus_gfoot_vx_along_z * t442;
+        let t447 = minus_s_foot_along_z * t424;
+        let t452 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t149;
+        let t454 = gdrive_vx_along_z * t452 + t443;
+        let t457 = gdrive_vy_along_z * t452 + minus_gfoot_vy_along_z * t442;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t459 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t460 = minus_rate_left_bar_along_z * t459;
+        let t461 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t463 = t460 + t461 + t460;
+        let t464 = minus_s_left_bar_along_z * t463;
+        let t465 = minus_gfoot_vx_along_z * t464;
+        let t467 = t459 * t459;
+        let t468 = t467 * t145;
+        let t469 = minus_gfoot_vy_along_z * t464 - t468;
+        let t472 = t34 * (minus_rate_dot_foot_along_z - t464);
+        let t474 = c_left_bar_along_z * t463 + minus_s_left_bar_along_z * t472;
+        let t475 = minus_gfoot_vx_along_z * t474;
+        let t477 = pose[1] * t468;
+        let t480 = minus_gfoot_vy_along_z * t474
+            + minus_gleft_bar_vy_along_z * (t477 - t467);
+        let t481 = t467 * t144;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t434;
+        let t487 = minus_s_left_bar_along_z * (t481 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t151 - t477);
+        let t488 = minus_gfoot_vx_along_z * t487;
+        let t491 = minus_gfoot_vy_along_z * t487 + minus_gleft_bar_vy_along_z * t461;
+        let t492 = t437 - t465;
+        let t493 = t438 - t469;
+        let t494 = 3.225806451612903 * t189;
+        let t495 = minus_gfoot_vx_along_z * t494;
+        let t498 = minus_gfoot_vy_along_z * t494
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t604 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t610 = minus_s_foot_along_z * t573 - (t40 * (t580 + t588) + t49 * t586);
-        let t613 = gdrive_vx_along_z * t610 - 3.225806451612903 * t522;
-        let t620 = gdrive_vy_along_z * t610
-            - minus_gfoot_vy_along_z * (c_left_bar_along_z * t540)
-            - minus_gleft_bar_vy_along_z * (minus_s_left_bar_along_z * t550);
-        let t627 = t40 * (minus_rate_dot_left_bar_along_z - t584) - t49 * (t579 + t588)
-            - minus_s_foot_along_z * t569;
-        let t629 = minus_s_left_bar_along_z * t540;
-        let t631 = gdrive_vx_along_z * t627 - minus_gfoot_vx_along_z * t629;
-        let t636 = gdrive_vy_along_z * t627 - minus_gfoot_vy_along_z * t629
-            + 3.225806451612903 * t550;
-        let t640 = t540 + 0.31 * t573 - 0.31 * t571;
+        let t499 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t501 = 3.225806451612903 * (actuator_accelerations[2] - t187);
+        let t504 = gdrive_vx_along_z * t501 + 3.225806451612903 * t425;
+        let t507 = gdrive_vy_along_z * t501 + 3.225806451612903 * t426;
+        let t515 = t40 * (minus_rate_dot_left_bar_along_z - t481)
+            - minus_s_left_bar_along_z * c_foot_along_z * (t477 + t151)
+            - minus_s_foot_along_z * t463;
+        let t517 = minus_s_left_bar_along_z * t447;
+        let t519 = gdrive_vx_along_z * t515 - minus_gfoot_vx_along_z * t517;
+        let t524 = gdrive_vy_along_z * t515 - minus_gfoot_vy_along_z * t517
+            + 3.225806451612903 * t442;
+        let t526 = t447 - 0.31 * t472;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t260, t270,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t333, t352, -t270,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t333, t352, -t270,
-                actuator_accelerations[0], 0.0, -t260, -t270, t383, t390, t390, t112,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t206, t216,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t267, t283, -t216,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t267, t283, -t216,
+                actuator_accelerations[0], 0.0, -t206, -t216, t265, t306, t306, t67,
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
-                gdrive_vx_along_y, t400, -(t405 + minus_gfoot_vx_along_y * t408), t422, t390, t437,
-                -t452, -t464, t466, t471, t474, t487, t503, -t422, t390, t437, -t452, -t464, t466,
-                t471, t474, t487, t503, -t422, t390, t400,
-                minus_gleft_bar_vx_along_y * t185
-                    - (t405 + minus_gfoot_vx_along_y * t511),
-                -(t422 - 0.31 * t464),
-                t383,
-                t522,
-                gdrive_vx_along_z * actuator_accelerations[2],
-                t114,
-                ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
-                gdrive_vx_along_z,
-                t534,
-                -(t539 + minus_gfoot_vx_along_z * t540),
-                t552,
-                t522,
-                t565,
-                -t576,
-                -t592,
-                t596,
-                t599,
-                0.0,
-                t613,
-                t631,
-                -t552,
-                t522,
-                t565,
-                -t576,
-                -t592,
-                t596,
-                t599,
-                0.0,
-                t613,
-                t631,
-                -t552,
-                t522,
-                t534,
-                -(t539 + minus_gfoot_vx_along_z * t640),
-                -(t552 - 0.31 * t592),
-                t383,
-                t383,
+                gdrive_vx_along_y, t325,
+                -(gdrive_vx_along_y * t329 - minus_gfoot_vx_along_y * t332), t346, t306, t359,
+                -t370, -t380, t382, t388, t389, -t394, t411, -t346, t306, t359, -t370, -t380, t382,
+                t388, t389, -t394, t411, -t346, t306, t325, minus_gfoot_vx_along_y * t416,
+                -(t346 - 0.31 * t380), t265, t425, gdrive_vx_along_z * actuator_accelerations[2],
+                t69, ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
+                gdrive_vx_along_z, t437, -(gdrive_vx_along_z * (t441 + t443)), t454, t425, t465,
+                -t475, -t488, t492, t495, 0.0, -t504, t519, -t454, t425, t465, -t475, -t488, t492,
+                t495, 0.0, -t504, t519, -t454, t425, t437, -(minus_gfoot_vx_along_z * t526 - t452),
+                -(t454 - 0.31 * t488), t265, t265,
             ],
             [
-                t13, t13, t24, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
-                gdrive_vy_along_x, t256, -(t261 + minus_gfoot_vy_along_x * t262), t274, t13, t287,
-                -t298, -t313, t317, t320, 0.0, t336, t356, -t274, t13, t287, -t298, -t313, t317,
-                t320, 0.0, t336, t356, -t274, t13, t256, -(t261 + minus_gfoot_vy_along_x * t368),
-                -(t274 - 0.31 * t313), t250, actuator_accelerations[1], actuator_accelerations[1],
+                t21, t21, t24, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
+                gdrive_vy_along_x, t202, -(t207 + minus_gfoot_vy_along_x * t208), t220, t21, t230,
+                -t238, -t249, t253, t256, 0.0, -t270, t287, -t220, t21, t230, -t238, -t249, t253,
+                t256, 0.0, -t270, t287, -t220, t21, t202, -(minus_gfoot_vy_along_x * t297 - t216),
+                -(t220 - 0.31 * t249), t189, actuator_accelerations[1], actuator_accelerations[1],
                 actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0,
-                -t404, t416, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t480, t497,
-                -t416, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t480, t497, -t416,
-                actuator_accelerations[1], 0.0, -t404, -t416, t250, t523,
-                gdrive_vy_along_z * actuator_accelerations[2], t119,
+                -t329, t340, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t391, t405,
+                -t340, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t391, t405, -t340,
+                actuator_accelerations[1], 0.0, -t329, -t340, t189, t426,
+                gdrive_vy_along_z * actuator_accelerations[2], t65,
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
-                gdrive_vy_along_z, t535, -(t543 + minus_gfoot_vy_along_z * t540), t555, t523, t568,
-                -t583, -t595, t597, t603, t604, t620, t636, -t555, t523, t568, -t583, -t595, t597,
-                t603, t604, t620, t636, -t555, t523, t535,
-                minus_gleft_bar_vy_along_z * t218
-                    - (t543 + minus_gfoot_vy_along_z * t640),
-                -(t555 - 0.31 * t595),
-                t250,
-                t250,
+                gdrive_vy_along_z, t438,
+                -(gdrive_vy_along_z * t441 + minus_gfoot_vy_along_z * t447), t457, t426, t469,
+                -t480, -t491, t493, t498, t499, -t507, t524, -t457, t426, t469, -t480, -t491, t493,
+                t498, t499, -t507, t524, -t457, t426, t438, -(minus_gfoot_vy_along_z * t526),
+                -(t457 - 0.31 * t491), t189, t189,
             ],
             [
                 t23, t23, t25, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
-                gdrive_vz_along_x, t257, -(t265 + minus_gfoot_vz_along_x * t262), t277, t23, t290,
-                -t305, -t316, t318, t324, t325, t345, t364, -t277, t23, t290, -t305, -t316, t318,
-                t324, t325, t345, t364, -t277, t23, t257,
-                minus_gleft_bar_vz_along_x * t154
-                    - (t265 + minus_gfoot_vz_along_x * t368),
-                -(t277 - 0.31 * t316),
-                -t389,
-                t391,
-                t391,
-                t109,
+                gdrive_vz_along_x, t203, -(gdrive_vz_along_x * t206 + t212), t223, t23, t232, -t243,
+                -t252, t254, t259, t260, -t277, t295, -t223, t23, t232, -t243, -t252, t254, t259,
+                t260, -t277, t295, -t223, t23, t203, -(minus_gfoot_vz_along_x * t297),
+                -(t223 - 0.31 * t252), -t305, t307, t307, t94,
                 ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
-                gdrive_vz_along_y,
-                t401,
-                -(t411 + minus_gfoot_vz_along_y * t408),
-                t425,
-                t391,
-                t438,
-                -t453,
-                -t465,
-                t467,
-                t473,
-                0.0,
-                t490,
-                t506,
-                -t425,
-                t391,
-                t438,
-                -t453,
-                -t465,
-                t467,
-                t473,
-                0.0,
-                t490,
-                t506,
-                -t425,
-                t391,
-                t401,
-                -(t411 + minus_gfoot_vz_along_y * t511),
-                -(t425 - 0.31 * t465),
-                -t389,
-                t521,
-                actuator_accelerations[2],
-                actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]),
-                1.0,
-                0.0,
-                -t538,
-                t548,
-                t521,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                t610,
-                t627,
-                -t548,
-                t521,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                t610,
-                t627,
-                -t548,
-                t521,
-                0.0,
-                -t538,
-                -t548,
-                -t389,
-                -t389,
+                gdrive_vz_along_y, t326,
+                -(gdrive_vz_along_y * t329 - minus_gfoot_vz_along_y * t332), t349, t307, t360,
+                -t371, -t381, t383, t385, 0.0, t397, t414, -t349, t307, t360, -t371, -t381, t383,
+                t385, 0.0, t397, t414, -t349, t307, t326, t340 + minus_gfoot_vz_along_y * t416,
+                -(t349 - 0.31 * t381), -t305, t424, actuator_accelerations[2],
+                actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0, 0.0,
+                -t441, t452, t424, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t501, t515, -t452, t424, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -t501, t515, -t452, t424, 0.0, -t441, -t452, -t305, -t305,
             ],
         ])
     }
@@ -2672,7 +2336,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 711 operations (246 additions, 455 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 590 intermediates.
+    /// 671 operations (234 additions, 429 multiplications, 8 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 550 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2681,390 +2345,385 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t1 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t4 = 0.31 * c_left_bar_along_x;
         let minus_s_foot_along_x = pose[1] / t4;
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t9, 1.0, "along_x")?;
         let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t14 = 1.0 / c_left_bar_along_x;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t12 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t17 = minus_s_left_bar_along_x * c_foot_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
+            * (gdrive_vy_along_x * (t17 * t12));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
-        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t28 = t21 * t21 + t26 * t26;
-        let t29 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t30 = t28 + t29;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
-        let t41 = acceleration[1] + pose[1] * t30 + t38 + t38;
-        let t45 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t45 * t14;
-        let t48 = pose[2] * minus_rate_foot_along_x;
-        let t49 = minus_rate_foot_along_x * t48;
-        let t52 = acceleration[2] - (t49 - pose[2] * t30);
-        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t9 * t30 + t23)
-            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t52;
+        let t23 = pose[2] * minus_rate_foot_along_x;
+        let t24 = c_foot_along_x * minus_rate_left_bar_along_x * t23;
+        let t25 = gdrive_vy_along_x * t24;
+        let t27 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t28 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t29 = t27 + t28;
+        let t37 = acceleration[1] + pose[1] * t29 + t24 + t24;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t42 = acceleration[2] + pose[2] * t27;
+        let rate_dot_drive_along_x = acceleration[0] - (t25 - 0.31 * t9 * t29 + t25)
+            + gdrive_vy_along_x * t37 + gdrive_vz_along_x * t42;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
-        let t62 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t62, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t62);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t67 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t67, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t67);
-        let t69 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t69, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t69;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t73 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t73);
-        let t77 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t77 * t73;
+        let t51 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t52 = 1.0 - t51;
+        ::overact::guard::reach(t52, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t52);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let t54 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t54;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t58 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t58, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t58);
+        let t60 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t60, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t60;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t83 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t83, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t83);
+        let t64 = t2 * t6;
+        let t65 = 1.0 - t64;
+        ::overact::guard::reach(t65, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t65);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t88 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t88, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t88);
-        let t90 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t90, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t90;
+        let t67 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t67;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t71 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t71, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t71);
+        let t73 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t73, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t73;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t94 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t97 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t97);
-        let t101 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t101 * t97;
-        let t105 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t109 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t111 = t105 - gdrive_vy_along_x * t94 + gdrive_vz_along_x * t109;
-        ::overact::guard::platform(t111, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t111, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t111, 1.0, "kept actuators")?;
-        let t112 = 1.0 / t111;
-        let t113 = t94 * t112;
-        let t115 = t109 * t112;
-        let t117 = minus_gfoot_vy_along_x * t113 - minus_gfoot_vz_along_x * t115;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t41
-            + minus_gfoot_vz_along_x * t52;
-        let t121 = t117 * minus_rate_dot_foot_along_x;
-        let t124 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t112;
-        let t128 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t112;
-        let t130 = minus_gfoot_vz_along_x * t124 - minus_gfoot_vy_along_x * t128;
-        let t131 = t130 * minus_rate_dot_foot_along_x;
-        let t134 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t112;
-        let t138 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t112;
-        let t140 = minus_gfoot_vy_along_x * t134 - minus_gfoot_vz_along_x * t138;
-        let t141 = t140 * minus_rate_dot_foot_along_x;
-        let t142 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t146 = c_foot_along_x * t29
+        let t77 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t80 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t84 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t86 = t80 - gdrive_vy_along_x * t77 + gdrive_vz_along_x * t84;
+        ::overact::guard::platform(t86, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t86, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t86, 1.0, "kept actuators")?;
+        let t87 = 1.0 / t86;
+        let t88 = t77 * t87;
+        let t90 = t84 * t87;
+        let t92 = minus_gfoot_vy_along_x * t88 - minus_gfoot_vz_along_x * t90;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t37
+            + minus_gfoot_vz_along_x * t42;
+        let t96 = t92 * minus_rate_dot_foot_along_x;
+        let t99 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t87;
+        let t103 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t87;
+        let t105 = minus_gfoot_vz_along_x * t99 - minus_gfoot_vy_along_x * t103;
+        let t106 = t105 * minus_rate_dot_foot_along_x;
+        let t109 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t87;
+        let t113 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t87;
+        let t115 = minus_gfoot_vy_along_x * t109 - minus_gfoot_vz_along_x * t113;
+        let t116 = t115 * minus_rate_dot_foot_along_x;
+        let t117 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t121 = c_foot_along_x * t28
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t153 = c_foot_along_x * rate_dot_drive_along_x;
-        let t155 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t29 - t117 * t153;
-        let t156 = t130 * t153;
-        let t157 = t140 * t153;
-        let t158 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t159 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t160 = minus_rate_left_bar_along_x * t159;
-        let t161 = t158 + t160;
-        let t163 = 3.225806451612903 * t48;
-        let t164 = minus_rate_left_bar_along_x * t163;
-        let t166 = minus_s_left_bar_along_x * t161 + c_left_bar_along_x * t164;
-        let t168 = minus_gleft_bar_vz_along_x * t115;
-        let t169 = t163 * t159;
-        let t171 = t117 * t166 + t168 * t169;
-        let t172 = minus_gleft_bar_vz_along_x * t124;
-        let t175 = t172 * t169 - t130 * t166;
-        let t177 = minus_gleft_bar_vz_along_x * t138;
-        let t179 = t140 * t166 + t177 * t169;
-        let t180 = t160 + t161;
-        let t182 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t184 = t164 + t164 - t182;
-        let t186 = c_left_bar_along_x * t180 - minus_s_left_bar_along_x * t184;
-        let t189 = 10.40582726326743 * (t48 * t48);
-        let t190 = t159 * t159;
-        let t191 = t189 - t190;
-        let t193 = t117 * t186 - t168 * t191;
-        let t196 = t130 * t186 + t172 * t191;
-        let t199 = t140 * t186 - t177 * t191;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
-        let t201 = t169 + minus_rate_dot_left_bar_along_x;
-        let t205 = minus_s_left_bar_along_x * t201 + c_left_bar_along_x * (t28 - t189);
-        let t208 = t117 * t205 - t168 * t158;
-        let t211 = t130 * t205 + t172 * t158;
-        let t214 = t140 * t205 - t177 * t158;
-        let t215 = t171 - t121;
-        let t216 = t131 + t175;
-        let t217 = t179 - t141;
-        let t219 = 3.225806451612903 * acceleration[2];
-        let t221 = t168 * t182 - t117 * t219;
-        let t224 = t130 * t219 + t172 * t182;
-        let t227 = t177 * t182 - t140 * t219;
-        let t228 = t168 * minus_rate_dot_left_bar_along_x;
-        let t229 = t172 * minus_rate_dot_left_bar_along_x;
-        let t230 = t177 * minus_rate_dot_left_bar_along_x;
-        let t237 = c_left_bar_along_x * t142;
-        let t242 = minus_s_left_bar_along_x * t153 - 9.81 * c_left_bar_along_x;
-        let t244 = minus_s_foot_along_x * t184 - (t9 * (t190 + t28) + t45 * t201)
-            + t117 * t237 - t168 * t242;
-        let t247 = t130 * t237 + t172 * t242;
-        let t250 = t140 * t237 - t177 * t242;
-        let t258 = minus_s_left_bar_along_x * t142;
-        let t263 = c_left_bar_along_x * t153 + 31.64516129032258 * pose[2];
-        let t265 = t9 * (minus_rate_dot_left_bar_along_x - t169) - t45 * (t189 + t28)
-            - minus_s_foot_along_x * t180 + t117 * t258 + t168 * t263;
-        let t268 = t130 * t258 - t172 * t263;
-        let t271 = t140 * t258 + t177 * t263;
-        let t273 = t142 + 0.31 * t184;
-        let t275 = t273 - 0.31 * t182;
-        let t292 = t4 * t273;
-        let t297 = 0.31 * (t242 - 0.31 * t201);
-        let t299 = acceleration[0] + t117 * t292 - t168 * t297;
-        let t302 = t130 * t292 + t172 * t297;
-        let t305 = t140 * t292 - t177 * t297;
+        let t128 = c_foot_along_x * rate_dot_drive_along_x;
+        let t130 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t28 - t92 * t128;
+        let t131 = t105 * t128;
+        let t132 = t115 * t128;
+        let t133 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t134 = minus_rate_left_bar_along_x * t133;
+        let t135 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t137 = t134 + t135 + t134;
+        let t138 = minus_s_left_bar_along_x * t137;
+        let t140 = minus_gleft_bar_vz_along_x * t90;
+        let t141 = 3.225806451612903 * t23;
+        let t142 = t141 * t133;
+        let t144 = t92 * t138 + t140 * t142;
+        let t145 = minus_gleft_bar_vz_along_x * t99;
+        let t148 = t145 * t142 - t105 * t138;
+        let t150 = minus_gleft_bar_vz_along_x * t113;
+        let t152 = t115 * t138 + t150 * t142;
+        let t154 = minus_rate_left_bar_along_x * t141;
+        let t155 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t157 = t154 + t154 - t155;
+        let t159 = c_left_bar_along_x * t137 - minus_s_left_bar_along_x * t157;
+        let t161 = t1 * t28;
+        let t162 = t133 * t133;
+        let t163 = t161 - t162;
+        let t165 = t92 * t159 - t140 * t163;
+        let t168 = t105 * t159 + t145 * t163;
+        let t171 = t115 * t159 - t150 * t163;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t42;
+        let t173 = t142 + minus_rate_dot_left_bar_along_x;
+        let t177 = minus_s_left_bar_along_x * t173 + c_left_bar_along_x * (t27 - t161);
+        let t180 = t92 * t177 - t140 * t135;
+        let t183 = t105 * t177 + t145 * t135;
+        let t186 = t115 * t177 - t150 * t135;
+        let t187 = t144 - t96;
+        let t188 = t106 + t148;
+        let t189 = t152 - t116;
+        let t191 = 3.225806451612903 * acceleration[2];
+        let t193 = t140 * t155 - t92 * t191;
+        let t196 = t105 * t191 + t145 * t155;
+        let t199 = t150 * t155 - t115 * t191;
+        let t200 = t140 * minus_rate_dot_left_bar_along_x;
+        let t201 = t145 * minus_rate_dot_left_bar_along_x;
+        let t202 = t150 * minus_rate_dot_left_bar_along_x;
+        let t209 = c_left_bar_along_x * t117;
+        let t214 = minus_s_left_bar_along_x * t128 - 9.81 * c_left_bar_along_x;
+        let t216 = minus_s_foot_along_x * t157 - (t9 * (t162 + t27) + t17 * t173)
+            + t92 * t209 - t140 * t214;
+        let t219 = t105 * t209 + t145 * t214;
+        let t222 = t115 * t209 - t150 * t214;
+        let t230 = minus_s_left_bar_along_x * t117;
+        let t235 = c_left_bar_along_x * t128 + 31.64516129032258 * pose[2];
+        let t237 = t9 * (minus_rate_dot_left_bar_along_x - t142) - t17 * (t161 + t27)
+            - minus_s_foot_along_x * t137 + t92 * t230 + t140 * t235;
+        let t240 = t105 * t230 - t145 * t235;
+        let t243 = t115 * t230 + t150 * t235;
+        let t245 = t117 + 0.31 * t157;
+        let t247 = t245 - 0.31 * t155;
+        let t250 = minus_rate_foot_along_x * t23;
+        let t265 = t4 * t245;
+        let t270 = 0.31 * (t214 - 0.31 * t173);
+        let t272 = acceleration[0] + t92 * t265 - t140 * t270;
+        let t275 = t105 * t265 + t145 * t270;
+        let t278 = t115 * t265 - t150 * t270;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t280 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t282 = acceleration[0] + pose[0] * t280;
+        let t284 = minus_s_left_bar_along_y * c_foot_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (t284 * t54 * gdrive_vz_along_y);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t309 = pose[0] * minus_rate_foot_along_y;
-        let t310 = minus_rate_foot_along_y * t309;
-        let t311 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t73;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t314 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t317 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t319 = t311 + t314 * t314 + t317 * t317;
-        let t322 = acceleration[0] - (t310 - pose[0] * t319);
-        let t325 = pose[0] * (minus_rate_foot_along_y * t314);
-        let t334 = pose[0] * (minus_rate_foot_along_y * t317);
-        let t337 = acceleration[2] + pose[2] * t319 + t334 + t334;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t322 + acceleration[1]
-            - (t325 - 0.31 * t69 * t319 + t325) + gdrive_vz_along_y * t337;
+        let t291 = pose[0] * minus_rate_foot_along_y;
+        let t293 = t291 * (c_foot_along_y * minus_rate_left_bar_along_y);
+        let t294 = gdrive_vz_along_y * t293;
+        let t296 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t297 = t296 + t280;
+        let t306 = acceleration[2] + pose[2] * t297 + t293 + t293;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t282 + acceleration[1]
+            - (t294 - 0.31 * t60 * t297 + t294) + gdrive_vz_along_y * t306;
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
-        let t345 = t105 * t112;
-        let t348 = minus_gfoot_vx_along_y * t345 + minus_gfoot_vz_along_y * t115;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t322
-            + minus_gfoot_vz_along_y * t337;
-        let t352 = t348 * minus_rate_dot_foot_along_y;
-        let t355 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t112;
-        let t358 = minus_gfoot_vx_along_y * t355 + minus_gfoot_vz_along_y * t124;
-        let t359 = t358 * minus_rate_dot_foot_along_y;
-        let t362 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t112;
-        let t365 = minus_gfoot_vx_along_y * t362 + minus_gfoot_vz_along_y * t138;
-        let t366 = t365 * minus_rate_dot_foot_along_y;
-        let t369 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t374 = c_foot_along_y * t311
+        let t314 = t80 * t87;
+        let t317 = minus_gfoot_vx_along_y * t314 + minus_gfoot_vz_along_y * t90;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t282
+            + minus_gfoot_vz_along_y * t306;
+        let t321 = t317 * minus_rate_dot_foot_along_y;
+        let t324 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t87;
+        let t327 = minus_gfoot_vx_along_y * t324 + minus_gfoot_vz_along_y * t99;
+        let t328 = t327 * minus_rate_dot_foot_along_y;
+        let t331 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t87;
+        let t334 = minus_gfoot_vx_along_y * t331 + minus_gfoot_vz_along_y * t113;
+        let t335 = t334 * minus_rate_dot_foot_along_y;
+        let t338 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t343 = c_foot_along_y * t296
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t379 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t380 = t348 * t379;
-        let t385 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t311 - t358 * t379;
-        let t386 = t365 * t379;
-        let t387 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t388 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t389 = minus_rate_left_bar_along_y * t388;
-        let t390 = t387 + t389;
-        let t392 = 3.225806451612903 * t309;
-        let t393 = minus_rate_left_bar_along_y * t392;
-        let t395 = minus_s_left_bar_along_y * t390 + c_left_bar_along_y * t393;
-        let t397 = minus_gleft_bar_vx_along_y * t345;
-        let t398 = t392 * t388;
-        let t400 = t348 * t395 - t397 * t398;
-        let t401 = minus_gleft_bar_vx_along_y * t355;
-        let t404 = t401 * t398 - t358 * t395;
-        let t406 = minus_gleft_bar_vx_along_y * t362;
-        let t408 = t365 * t395 - t406 * t398;
-        let t409 = t389 + t390;
-        let t411 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t413 = t393 + t393 - t411;
-        let t415 = c_left_bar_along_y * t409 - minus_s_left_bar_along_y * t413;
-        let t418 = 10.40582726326743 * (t309 * t309);
-        let t419 = t388 * t388;
-        let t420 = t418 - t419;
-        let t422 = t348 * t415 + t397 * t420;
-        let t425 = t358 * t415 + t401 * t420;
-        let t428 = t365 * t415 + t406 * t420;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t322;
-        let t430 = t398 + minus_rate_dot_left_bar_along_y;
-        let t432 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t435 = minus_s_left_bar_along_y * t430 + c_left_bar_along_y * (t432 - t418);
-        let t438 = t348 * t435 + t397 * t387;
-        let t441 = t358 * t435 + t401 * t387;
-        let t444 = t365 * t435 + t406 * t387;
-        let t445 = t352 - t400;
-        let t446 = t359 + t404;
-        let t447 = t366 - t408;
-        let t448 = 3.225806451612903 * acceleration[0];
-        let t451 = t348 * t448 + t397 * t411;
-        let t454 = t358 * t448 + t401 * t411;
-        let t457 = t365 * t448 + t406 * t411;
-        let t458 = t397 * minus_rate_dot_left_bar_along_y;
-        let t459 = t401 * minus_rate_dot_left_bar_along_y;
-        let t460 = t406 * minus_rate_dot_left_bar_along_y;
-        let t461 = c_left_bar_along_y * t369;
-        let t463 = minus_s_left_bar_along_y * t379;
-        let t465 = t348 * t461 + t397 * t463;
-        let t475 = minus_s_foot_along_y * t413 - (t69 * (t419 + t432) + t77 * t430)
-            + t358 * t461 + t401 * t463;
-        let t478 = t365 * t461 + t406 * t463;
-        let t479 = c_left_bar_along_y * t379;
-        let t481 = minus_s_left_bar_along_y * t369;
-        let t483 = t397 * t479 - t348 * t481;
-        let t494 = t69 * (minus_rate_dot_left_bar_along_y - t398) - t77 * (t418 + t432)
-            - minus_s_foot_along_y * t409 + t358 * t481 - t401 * t479;
-        let t497 = t406 * t479 - t365 * t481;
-        let t502 = t369 + 0.31 * t413 - 0.31 * t411;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t97;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t520 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t348 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t349 = t317 * t348;
+        let t354 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t296 - t327 * t348;
+        let t355 = t334 * t348;
+        let t356 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t357 = minus_rate_left_bar_along_y * t356;
+        let t358 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t360 = t357 + t358 + t357;
+        let t361 = minus_s_left_bar_along_y * t360;
+        let t363 = minus_gleft_bar_vx_along_y * t314;
+        let t364 = 3.225806451612903 * t291;
+        let t365 = t364 * t356;
+        let t367 = t317 * t361 - t363 * t365;
+        let t368 = minus_gleft_bar_vx_along_y * t324;
+        let t371 = t368 * t365 - t327 * t361;
+        let t373 = minus_gleft_bar_vx_along_y * t331;
+        let t375 = t334 * t361 - t373 * t365;
+        let t377 = minus_rate_left_bar_along_y * t364;
+        let t378 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t380 = t377 + t377 - t378;
+        let t382 = c_left_bar_along_y * t360 - minus_s_left_bar_along_y * t380;
+        let t384 = t51 * t296;
+        let t385 = t356 * t356;
+        let t386 = t384 - t385;
+        let t388 = t317 * t382 + t363 * t386;
+        let t391 = t327 * t382 + t368 * t386;
+        let t394 = t334 * t382 + t373 * t386;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t282;
+        let t396 = t365 + minus_rate_dot_left_bar_along_y;
+        let t400 = minus_s_left_bar_along_y * t396 + c_left_bar_along_y * (t280 - t384);
+        let t403 = t317 * t400 + t363 * t358;
+        let t406 = t327 * t400 + t368 * t358;
+        let t409 = t334 * t400 + t373 * t358;
+        let t410 = t321 - t367;
+        let t411 = t328 + t371;
+        let t412 = t335 - t375;
+        let t413 = 3.225806451612903 * acceleration[0];
+        let t416 = t317 * t413 + t363 * t378;
+        let t419 = t327 * t413 + t368 * t378;
+        let t422 = t334 * t413 + t373 * t378;
+        let t423 = t363 * minus_rate_dot_left_bar_along_y;
+        let t424 = t368 * minus_rate_dot_left_bar_along_y;
+        let t425 = t373 * minus_rate_dot_left_bar_along_y;
+        let t426 = c_left_bar_along_y * t338;
+        let t428 = minus_s_left_bar_along_y * t348;
+        let t430 = t317 * t426 + t363 * t428;
+        let t440 = minus_s_foot_along_y * t380 - (t60 * (t385 + t280) + t284 * t396)
+            + t327 * t426 + t368 * t428;
+        let t443 = t334 * t426 + t373 * t428;
+        let t444 = c_left_bar_along_y * t348;
+        let t446 = minus_s_left_bar_along_y * t338;
+        let t448 = t363 * t444 - t317 * t446;
+        let t459 = t60 * (minus_rate_dot_left_bar_along_y - t365) - t284 * (t384 + t280)
+            - minus_s_foot_along_y * t360 + t327 * t446 - t368 * t444;
+        let t462 = t373 * t444 - t334 * t446;
+        let t463 = minus_rate_foot_along_y * t291;
+        let t468 = t338 + 0.31 * t380 - 0.31 * t378;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t486 = minus_s_left_bar_along_z * c_foot_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (gdrive_vx_along_z * (t486 * t67));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t525 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t527 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t529 = t520 * t520 + t525 + t527 * t527;
-        let t532 = pose[1] * (minus_rate_foot_along_z * t520);
-        let t535 = acceleration[0] + pose[0] * t529 + t532 + t532;
-        let t537 = pose[1] * minus_rate_foot_along_z;
-        let t538 = minus_rate_foot_along_z * t537;
-        let t541 = acceleration[1] - (t538 - pose[1] * t529);
-        let t545 = pose[1] * (minus_rate_foot_along_z * t527);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t535 + gdrive_vy_along_z * t541
-            + acceleration[2] - (t545 - 0.31 * t90 * t529 + t545);
-        let t552 = 9.81 + rate_dot_drive_along_z;
+        let t492 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t494 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t495 = t492 + t494;
+        let t498 = pose[1] * minus_rate_foot_along_z;
+        let t499 = c_foot_along_z * minus_rate_left_bar_along_z * t498;
+        let t502 = acceleration[0] + pose[0] * t495 + t499 + t499;
+        let t505 = acceleration[1] + pose[1] * t494;
+        let t508 = gdrive_vx_along_z * t499;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t502 + gdrive_vy_along_z * t505
+            + acceleration[2] - (t508 - 0.31 * t73 * t495 + t508);
+        let t515 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let t560 = minus_gfoot_vy_along_z * t113 - minus_gfoot_vx_along_z * t345;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t535
-            + minus_gfoot_vy_along_z * t541;
-        let t564 = t560 * minus_rate_dot_foot_along_z;
-        let t567 = minus_gfoot_vx_along_z * t355 - minus_gfoot_vy_along_z * t128;
-        let t568 = t567 * minus_rate_dot_foot_along_z;
-        let t571 = minus_gfoot_vy_along_z * t134 - minus_gfoot_vx_along_z * t362;
-        let t572 = t571 * minus_rate_dot_foot_along_z;
-        let t573 = minus_s_foot_along_z * t552;
-        let t579 = c_foot_along_z * t525
+        let t523 = minus_gfoot_vy_along_z * t88 - minus_gfoot_vx_along_z * t314;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t502
+            + minus_gfoot_vy_along_z * t505;
+        let t527 = t523 * minus_rate_dot_foot_along_z;
+        let t530 = minus_gfoot_vx_along_z * t324 - minus_gfoot_vy_along_z * t103;
+        let t531 = t530 * minus_rate_dot_foot_along_z;
+        let t534 = minus_gfoot_vy_along_z * t109 - minus_gfoot_vx_along_z * t331;
+        let t535 = t534 * minus_rate_dot_foot_along_z;
+        let t536 = minus_s_foot_along_z * t515;
+        let t542 = c_foot_along_z * t492
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t581 = c_foot_along_z * t552;
-        let t582 = t560 * t581;
-        let t583 = t567 * t581;
-        let t588 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t525 - t571 * t581;
-        let t589 = minus_gleft_bar_vy_along_z * t113;
-        let t590 = 3.225806451612903 * t537;
-        let t591 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t592 = t590 * t591;
-        let t594 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t595 = minus_rate_left_bar_along_z * t591;
-        let t596 = t594 + t595;
-        let t598 = minus_rate_left_bar_along_z * t590;
-        let t600 = minus_s_left_bar_along_z * t596 + c_left_bar_along_z * t598;
-        let t602 = t589 * t592 - t560 * t600;
-        let t604 = minus_gleft_bar_vy_along_z * t128;
-        let t606 = t567 * t600 + t604 * t592;
-        let t607 = minus_gleft_bar_vy_along_z * t134;
-        let t610 = t607 * t592 - t571 * t600;
-        let t611 = t595 + t596;
-        let t613 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t615 = t598 + t598 - t613;
-        let t617 = c_left_bar_along_z * t611 - minus_s_left_bar_along_z * t615;
-        let t620 = 10.40582726326743 * (t537 * t537);
-        let t621 = t591 * t591;
-        let t622 = t620 - t621;
-        let t624 = t560 * t617 + t589 * t622;
-        let t627 = t567 * t617 - t604 * t622;
-        let t630 = t571 * t617 + t607 * t622;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t541;
-        let t632 = t592 + minus_rate_dot_left_bar_along_z;
-        let t634 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t637 = minus_s_left_bar_along_z * t632 + c_left_bar_along_z * (t634 - t620);
-        let t640 = t560 * t637 + t589 * t594;
-        let t643 = t567 * t637 - t604 * t594;
-        let t646 = t571 * t637 + t607 * t594;
-        let t647 = t564 + t602;
-        let t648 = t606 - t568;
-        let t649 = t572 + t610;
-        let t650 = 3.225806451612903 * acceleration[1];
-        let t653 = t560 * t650 + t589 * t613;
-        let t656 = t604 * t613 - t567 * t650;
-        let t659 = t571 * t650 + t607 * t613;
-        let t660 = t589 * minus_rate_dot_left_bar_along_z;
-        let t661 = t604 * minus_rate_dot_left_bar_along_z;
-        let t662 = t607 * minus_rate_dot_left_bar_along_z;
-        let t663 = c_left_bar_along_z * t573;
-        let t665 = minus_s_left_bar_along_z * t581;
-        let t667 = t560 * t663 + t589 * t665;
-        let t670 = t567 * t663 - t604 * t665;
-        let t680 = minus_s_foot_along_z * t615 - (t90 * (t621 + t634) + t101 * t632)
-            + t571 * t663 + t607 * t665;
-        let t681 = minus_s_left_bar_along_z * t573;
-        let t683 = c_left_bar_along_z * t581;
-        let t685 = t560 * t681 - t589 * t683;
-        let t688 = t567 * t681 + t604 * t683;
-        let t699 = t90 * (minus_rate_dot_left_bar_along_z - t592) - t101 * (t620 + t634)
-            - minus_s_foot_along_z * t611 + t571 * t681 - t607 * t683;
-        let t703 = t573 + 0.31 * t615 - 0.31 * t613;
+        let t544 = c_foot_along_z * t515;
+        let t545 = t523 * t544;
+        let t546 = t530 * t544;
+        let t551 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t492 - t534 * t544;
+        let t552 = minus_gleft_bar_vy_along_z * t88;
+        let t553 = 3.225806451612903 * t498;
+        let t554 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t555 = t553 * t554;
+        let t557 = minus_rate_left_bar_along_z * t554;
+        let t558 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t560 = t557 + t558 + t557;
+        let t561 = minus_s_left_bar_along_z * t560;
+        let t563 = t552 * t555 - t523 * t561;
+        let t565 = minus_gleft_bar_vy_along_z * t103;
+        let t567 = t530 * t561 + t565 * t555;
+        let t568 = minus_gleft_bar_vy_along_z * t109;
+        let t571 = t568 * t555 - t534 * t561;
+        let t573 = minus_rate_left_bar_along_z * t553;
+        let t574 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t576 = t573 + t573 - t574;
+        let t578 = c_left_bar_along_z * t560 - minus_s_left_bar_along_z * t576;
+        let t580 = t64 * t492;
+        let t581 = t554 * t554;
+        let t582 = t580 - t581;
+        let t584 = t523 * t578 + t552 * t582;
+        let t587 = t530 * t578 - t565 * t582;
+        let t590 = t534 * t578 + t568 * t582;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t505;
+        let t592 = t555 + minus_rate_dot_left_bar_along_z;
+        let t596 = minus_s_left_bar_along_z * t592 + c_left_bar_along_z * (t494 - t580);
+        let t599 = t523 * t596 + t552 * t558;
+        let t602 = t530 * t596 - t565 * t558;
+        let t605 = t534 * t596 + t568 * t558;
+        let t606 = t527 + t563;
+        let t607 = t567 - t531;
+        let t608 = t535 + t571;
+        let t609 = 3.225806451612903 * acceleration[1];
+        let t612 = t523 * t609 + t552 * t574;
+        let t615 = t565 * t574 - t530 * t609;
+        let t618 = t534 * t609 + t568 * t574;
+        let t619 = t552 * minus_rate_dot_left_bar_along_z;
+        let t620 = t565 * minus_rate_dot_left_bar_along_z;
+        let t621 = t568 * minus_rate_dot_left_bar_along_z;
+        let t622 = c_left_bar_along_z * t536;
+        let t624 = minus_s_left_bar_along_z * t544;
+        let t626 = t523 * t622 + t552 * t624;
+        let t629 = t530 * t622 - t565 * t624;
+        let t639 = minus_s_foot_along_z * t576 - (t73 * (t581 + t494) + t486 * t592)
+            + t534 * t622 + t568 * t624;
+        let t640 = minus_s_left_bar_along_z * t536;
+        let t642 = c_left_bar_along_z * t544;
+        let t644 = t523 * t640 - t552 * t642;
+        let t647 = t530 * t640 + t565 * t642;
+        let t658 = t73 * (minus_rate_dot_left_bar_along_z - t555) - t486 * (t580 + t494)
+            - minus_s_foot_along_z * t560 + t534 * t640 - t568 * t642;
+        let t662 = t536 + 0.31 * t576 - 0.31 * t574;
+        let t664 = minus_rate_foot_along_z * t498;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, -t121, t117 * t142 - t146, t155,
-                rate_dot_drive_along_x, -t171, t193, t208, t215, t221, t228, t244, t265, -t155,
-                rate_dot_drive_along_x, -t171, t193, t208, t215, t221, t228, t244, t265, -t155,
-                rate_dot_drive_along_x, -t121, t117 * t275 - t146 + t168 * t49,
-                -(t155 + 0.31 * t208), t299, 0.0, 0.0, 0.0, 0.0, 0.0, t352, -(t348 * t369), t380,
-                0.0, t400, -t422, -t438, t445, t451, t458, -t465, t483, -t380, 0.0, t400, -t422,
-                -t438, t445, t451, t458, -t465, t483, -t380, 0.0, t352, t397 * t310 - t348 * t502,
-                -(t380 - 0.31 * t438), t299, 0.0, 0.0, 0.0, 0.0, 0.0, -t564, t560 * t573, -t582,
-                0.0, t602, t624, t640, -t647, -t653, -t660, t667, t685, t582, 0.0, t602, t624, t640,
-                -t647, -t653, -t660, t667, t685, t582, 0.0, -t564, t560 * t703 - t589 * t538,
-                -(0.31 * t640 - t582), t299, t299,
+                ::overact::math::sign(rate_drive_along_x), 1.0, -t96, t92 * t117 - t121, t130,
+                rate_dot_drive_along_x, -t144, t165, t180, t187, t193, t200, t216, t237, -t130,
+                rate_dot_drive_along_x, -t144, t165, t180, t187, t193, t200, t216, t237, -t130,
+                rate_dot_drive_along_x, -t96, t92 * t247 - t121 + t140 * t250,
+                -(t130 + 0.31 * t180), t272, 0.0, 0.0, 0.0, 0.0, 0.0, t321, -(t317 * t338), t349,
+                0.0, t367, -t388, -t403, t410, t416, t423, -t430, t448, -t349, 0.0, t367, -t388,
+                -t403, t410, t416, t423, -t430, t448, -t349, 0.0, t321, t363 * t463 - t317 * t468,
+                -(t349 - 0.31 * t403), t272, 0.0, 0.0, 0.0, 0.0, 0.0, -t527, t523 * t536, -t545,
+                0.0, t563, t584, t599, -t606, -t612, -t619, t626, t644, t545, 0.0, t563, t584, t599,
+                -t606, -t612, -t619, t626, t644, t545, 0.0, -t527, t523 * t662 - t552 * t664,
+                -(0.31 * t599 - t545), t272, t272,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t131, t130 * t142, -t156, 0.0, t175, t196, t211, -t216,
-                -t224, -t229, t247, t268, t156, 0.0, t175, t196, t211, -t216, -t224, -t229, t247,
-                t268, t156, 0.0, -t131, t130 * t275 - t172 * t49, -(0.31 * t211 - t156), t302,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t106, t105 * t117, -t131, 0.0, t148, t168, t183, -t188,
+                -t196, -t201, t219, t240, t131, 0.0, t148, t168, t183, -t188, -t196, -t201, t219,
+                t240, t131, 0.0, -t106, t105 * t247 - t145 * t250, -(0.31 * t183 - t131), t275,
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, -t359, t358 * t369 - t374, t385,
-                rate_dot_drive_along_y, t404, t425, t441, -t446, -t454, -t459, t475, t494, -t385,
-                rate_dot_drive_along_y, t404, t425, t441, -t446, -t454, -t459, t475, t494, -t385,
-                rate_dot_drive_along_y, -t359, t358 * t502 - t374 - t401 * t310,
-                -(t385 + 0.31 * t441), t302, 0.0, 0.0, 0.0, 0.0, 0.0, -t568, t567 * t573, -t583,
-                0.0, -t606, t627, t643, t648, t656, t661, t670, t688, t583, 0.0, -t606, t627, t643,
-                t648, t656, t661, t670, t688, t583, 0.0, -t568, t567 * t703 + t604 * t538,
-                -(0.31 * t643 - t583), t302, t302,
+                ::overact::math::sign(rate_drive_along_y), 1.0, -t328, t327 * t338 - t343, t354,
+                rate_dot_drive_along_y, t371, t391, t406, -t411, -t419, -t424, t440, t459, -t354,
+                rate_dot_drive_along_y, t371, t391, t406, -t411, -t419, -t424, t440, t459, -t354,
+                rate_dot_drive_along_y, -t328, t327 * t468 - t343 - t368 * t463,
+                -(t354 + 0.31 * t406), t275, 0.0, 0.0, 0.0, 0.0, 0.0, -t531, t530 * t536, -t546,
+                0.0, -t567, t587, t602, t607, t615, t620, t629, t647, t546, 0.0, -t567, t587, t602,
+                t607, t615, t620, t629, t647, t546, 0.0, -t531, t530 * t662 + t565 * t664,
+                -(0.31 * t602 - t546), t275, t275,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t141, t140 * t142, -t157, 0.0, -t179, t199, t214, t217,
-                t227, t230, t250, t271, t157, 0.0, -t179, t199, t214, t217, t227, t230, t250, t271,
-                t157, 0.0, -t141, t140 * t275 + t177 * t49, -(0.31 * t214 - t157), t305, 0.0, 0.0,
-                0.0, 0.0, 0.0, t366, -(t365 * t369), t386, 0.0, t408, -t428, -t444, t447, t457,
-                t460, -t478, t497, -t386, 0.0, t408, -t428, -t444, t447, t457, t460, -t478, t497,
-                -t386, 0.0, t366, t406 * t310 - t365 * t502, -(t386 - 0.31 * t444), t305, t552,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t116, t115 * t117, -t132, 0.0, -t152, t171, t186, t189,
+                t199, t202, t222, t243, t132, 0.0, -t152, t171, t186, t189, t199, t202, t222, t243,
+                t132, 0.0, -t116, t115 * t247 + t150 * t250, -(0.31 * t186 - t132), t278, 0.0, 0.0,
+                0.0, 0.0, 0.0, t335, -(t334 * t338), t355, 0.0, t375, -t394, -t409, t412, t422,
+                t425, -t443, t462, -t355, 0.0, t375, -t394, -t409, t412, t422, t425, -t443, t462,
+                -t355, 0.0, t335, t373 * t463 - t334 * t468, -(t355 - 0.31 * t409), t278, t515,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, -t572, t571 * t573 - t579, t588,
-                t552, t610, t630, t646, -t649, -t659, -t662, t680, t699, -t588, t552, t610, t630,
-                t646, -t649, -t659, -t662, t680, t699, -t588, t552, -t572,
-                t571 * t703 - t579 - t607 * t538, -(t588 + 0.31 * t646), t305, t305,
+                ::overact::math::sign(rate_drive_along_z), 1.0, -t535, t534 * t536 - t542, t551,
+                t515, t571, t590, t605, -t608, -t618, -t621, t639, t658, -t551, t515, t571, t590,
+                t605, -t608, -t618, -t621, t639, t658, -t551, t515, -t535,
+                t534 * t662 - t542 - t568 * t664, -(t551 + 0.31 * t605), t278, t278,
             ],
         ])
     }
@@ -3079,7 +2738,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 700 operations (240 additions, 453 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 585 intermediates.
+    /// 662 operations (231 additions, 424 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 547 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3089,389 +2748,373 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let [(s_left_bar_along_x, c_left_bar_along_x),
-        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        let [(minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
         (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
         ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t2 = 0.31 * s_left_bar_along_x;
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
         let t6 = 1.0 / t5;
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x * t6;
+        let t8 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t8;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t12 = 0.31 * s_left_bar_along_x;
         let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t10 = 1.0 / c_left_bar_along_x;
+        let t15 = s_foot_along_x * s_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t10);
+            * (minus_gdrive_vy_along_x * (t15 * t8));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t17 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t2 * (minus_rate_foot_along_x * t17);
-        let t22 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = t17 * t17 + t22 * t22;
-        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t26 = t24 + t25;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t31 * t6;
-        let t33 = 0.31 * t31;
-        let t36 = t2 * (minus_rate_foot_along_x * t22);
-        let t39 = acceleration[1] - (t33 * t26 + t36 + t36);
-        let t43 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t33 * minus_gfoot_vz_along_x + t43 * t10;
-        let t47 = t2 * minus_rate_foot_along_x;
-        let t48 = minus_rate_foot_along_x * t47;
-        let t50 = acceleration[2] - (t2 * t26 - t48);
-        let rate_dot_drive_along_x = acceleration[0] - (t19 - 0.31 * t5 * t26 + t19)
-            - minus_gdrive_vy_along_x * t39 - minus_gdrive_vz_along_x * t50;
+        let t21 = t12 * minus_rate_foot_along_x;
+        let t22 = s_foot_along_x * minus_rate_left_bar_along_x * t21;
+        let t23 = minus_gdrive_vy_along_x * t22;
+        let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t26 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t28 = 0.31 * t5 * (t25 + t26);
+        let t35 = acceleration[1] - (t28 * minus_gdrive_vy_along_x + t22 + t22);
+        let minus_gdrive_vz_along_x = s_left_bar_along_x * t6;
+        let t40 = acceleration[2] - t12 * t25;
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - t28 + t23)
+            - minus_gdrive_vy_along_x * t35 - minus_gdrive_vz_along_x * t40;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
-        let t62 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t63 = 0.31 * t62;
-        let t64 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t64, 1.0, "along_y")?;
-        let t65 = 1.0 / t64;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t65;
-        let t68 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t68);
-        let t72 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t63 * minus_gfoot_vx_along_y + t72 * t68;
-        let minus_gdrive_vz_along_y = t62 * t65;
-        let t80 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t81 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t81, 1.0, "along_z")?;
-        let t82 = 1.0 / t81;
-        let minus_gdrive_vx_along_z = t80 * t82;
-        let t85 = minus_gdrive_vx_along_y
+        let t52 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t52, 1.0, "along_y")?;
+        let t53 = 1.0 / t52;
+        let minus_gdrive_vx_along_y = t53 * s_left_bar_along_y;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t53;
+        let t62 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t62, 1.0, "along_z")?;
+        let t63 = 1.0 / t62;
+        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z * t63;
+        let t66 = minus_gdrive_vx_along_y
             + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
-        let t86 = 0.31 * t80;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t82;
-        let t89 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t89);
-        let t93 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t86 * minus_gfoot_vy_along_z + t93 * t89;
-        let t97 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let t101 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
+        let minus_gdrive_vy_along_z = t63 * s_left_bar_along_z;
+        let t69 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
+        let t73 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
             + minus_gdrive_vx_along_z;
-        let t103 = t97 - minus_gdrive_vy_along_x * t85 - minus_gdrive_vz_along_x * t101;
-        ::overact::guard::platform(t103, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t103, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t103, 1.0, "kept actuators")?;
-        let t104 = 1.0 / t103;
-        let t105 = t85 * t104;
-        let t107 = t101 * t104;
-        let t109 = minus_gfoot_vy_along_x * t105 + minus_gfoot_vz_along_x * t107;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t39
-            + minus_gfoot_vz_along_x * t50;
-        let t113 = t109 * minus_rate_dot_foot_along_x;
-        let t116 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t104;
-        let t120 = (minus_gdrive_vy_along_z
-            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t104;
-        let t122 = minus_gfoot_vy_along_x * t116 + minus_gfoot_vz_along_x * t120;
-        let t123 = t122 * minus_rate_dot_foot_along_x;
-        let t126 = (minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t104;
-        let t130 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t104;
-        let t132 = minus_gfoot_vy_along_x * t126 + minus_gfoot_vz_along_x * t130;
-        let t133 = t132 * minus_rate_dot_foot_along_x;
-        let t136 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t25;
-        let t137 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t145 = s_foot_along_x * rate_dot_drive_along_x;
-        let t147 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t25 + t109 * t145;
-        let t148 = t122 * t145;
-        let t149 = t132 * t145;
-        let t150 = minus_gleft_bar_vz_along_x * t107;
-        let t151 = 3.225806451612903 * t47;
-        let t152 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t153 = t151 * t152;
-        let t155 = minus_rate_left_bar_along_x * t152;
-        let t156 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t157 = t155 - t156;
-        let t159 = minus_rate_left_bar_along_x * t151;
-        let t161 = s_left_bar_along_x * t157 + c_left_bar_along_x * t159;
-        let t163 = t150 * t153 - t109 * t161;
-        let t164 = minus_gleft_bar_vz_along_x * t120;
-        let t167 = t164 * t153 - t122 * t161;
-        let t168 = minus_gleft_bar_vz_along_x * t130;
-        let t171 = t168 * t153 - t132 * t161;
-        let t172 = t155 + t157;
-        let t174 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t176 = t159 + t174 + t159;
-        let t178 = c_left_bar_along_x * t172 - s_left_bar_along_x * t176;
-        let t181 = 10.40582726326743 * (t47 * t47);
-        let t182 = t152 * t152;
-        let t183 = t181 - t182;
-        let t185 = t109 * t178 + t150 * t183;
-        let t188 = t122 * t178 + t164 * t183;
-        let t191 = t132 * t178 + t168 * t183;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t50;
-        let t194 = t153 - minus_rate_dot_left_bar_along_x;
-        let t198 = s_left_bar_along_x * t194 + c_left_bar_along_x * (t24 - t181);
-        let t200 = t150 * t156 - t109 * t198;
-        let t203 = t164 * t156 - t122 * t198;
-        let t206 = t168 * t156 - t132 * t198;
-        let t207 = t113 - t163;
-        let t208 = t123 - t167;
-        let t209 = t133 - t171;
-        let t210 = 3.225806451612903 * acceleration[2];
-        let t213 = t109 * t210 + t150 * t174;
-        let t216 = t122 * t210 + t164 * t174;
-        let t219 = t132 * t210 + t168 * t174;
-        let t220 = t150 * minus_rate_dot_left_bar_along_x;
-        let t221 = t164 * minus_rate_dot_left_bar_along_x;
-        let t222 = t168 * minus_rate_dot_left_bar_along_x;
-        let t229 = c_left_bar_along_x * t137;
-        let t234 = s_left_bar_along_x * t145 + 9.81 * c_left_bar_along_x;
-        let t236 = minus_c_foot_along_x * t176 - (t5 * (t182 + t24) + t43 * t194)
-            + t109 * t229 + t150 * t234;
-        let t239 = t122 * t229 + t164 * t234;
-        let t242 = t132 * t229 + t168 * t234;
-        let t250 = s_left_bar_along_x * t137;
-        let t255 = c_left_bar_along_x * t145 - 9.81 * s_left_bar_along_x;
-        let t257 = t5 * (t153 + minus_rate_dot_left_bar_along_x) + t43 * (t181 + t24)
-            + minus_c_foot_along_x * t172 - t109 * t250 + t150 * t255;
-        let t260 = t164 * t255 - t122 * t250;
-        let t263 = t168 * t255 - t132 * t250;
-        let t266 = t137 + 0.31 * t176;
-        let t267 = 0.31 * t174 + t266;
-        let t285 = 0.31 * c_left_bar_along_x * t266;
-        let t290 = 0.31 * (0.31 * t194 - t234);
-        let t292 = acceleration[0] + t109 * t285 - t150 * t290;
-        let t295 = t122 * t285 - t164 * t290;
-        let t298 = t132 * t285 - t168 * t290;
-        let t299 = 0.31 * s_left_bar_along_y;
+        let t75 = t69 - minus_gdrive_vy_along_x * t66 - minus_gdrive_vz_along_x * t73;
+        ::overact::guard::platform(t75, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t75, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t75, 1.0, "kept actuators")?;
+        let t76 = 1.0 / t75;
+        let t77 = t66 * t76;
+        let t79 = t73 * t76;
+        let t81 = minus_gfoot_vy_along_x * t77 + minus_gfoot_vz_along_x * t79;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
+            + minus_gfoot_vz_along_x * t40;
+        let t85 = t81 * minus_rate_dot_foot_along_x;
+        let t88 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t76;
+        let t92 = (minus_gdrive_vy_along_z
+            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t76;
+        let t94 = minus_gfoot_vy_along_x * t88 + minus_gfoot_vz_along_x * t92;
+        let t95 = t94 * minus_rate_dot_foot_along_x;
+        let t98 = (minus_gdrive_vz_along_y
+            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t76;
+        let t102 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t76;
+        let t104 = minus_gfoot_vy_along_x * t98 + minus_gfoot_vz_along_x * t102;
+        let t105 = t104 * minus_rate_dot_foot_along_x;
+        let t108 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t26;
+        let t109 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t117 = s_foot_along_x * rate_dot_drive_along_x;
+        let t119 = s_foot_along_x * minus_rate_dot_foot_along_x
+            + minus_c_foot_along_x * t26 + t81 * t117;
+        let t120 = t94 * t117;
+        let t121 = t104 * t117;
+        let t122 = minus_gleft_bar_vz_along_x * t79;
+        let t123 = 3.225806451612903 * t21;
+        let t124 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t125 = t123 * t124;
+        let t127 = minus_rate_left_bar_along_x * t124;
+        let t128 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t130 = t127 + t127 - t128;
+        let t131 = s_left_bar_along_x * t130;
+        let t133 = t122 * t125 - t81 * t131;
+        let t134 = minus_gleft_bar_vz_along_x * t92;
+        let t137 = t134 * t125 - t94 * t131;
+        let t138 = minus_gleft_bar_vz_along_x * t102;
+        let t141 = t138 * t125 - t104 * t131;
+        let t143 = minus_rate_left_bar_along_x * t123;
+        let t144 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t146 = t143 + t144 + t143;
+        let t148 = c_left_bar_along_x * t130 - s_left_bar_along_x * t146;
+        let t150 = t124 * t124;
+        let t151 = t26 - t150;
+        let t152 = t151 - t150;
+        let t154 = t81 * t148 + t122 * t152;
+        let t157 = t94 * t148 + t134 * t152;
+        let t160 = t104 * t148 + t138 * t152;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
+        let t163 = t125 - minus_rate_dot_left_bar_along_x;
+        let t167 = s_left_bar_along_x * t163 + c_left_bar_along_x * (t25 - t151);
+        let t169 = t122 * t128 - t81 * t167;
+        let t172 = t134 * t128 - t94 * t167;
+        let t175 = t138 * t128 - t104 * t167;
+        let t176 = t85 - t133;
+        let t177 = t95 - t137;
+        let t178 = t105 - t141;
+        let t179 = 3.225806451612903 * acceleration[2];
+        let t182 = t81 * t179 + t122 * t144;
+        let t185 = t94 * t179 + t134 * t144;
+        let t188 = t104 * t179 + t138 * t144;
+        let t189 = t122 * minus_rate_dot_left_bar_along_x;
+        let t190 = t134 * minus_rate_dot_left_bar_along_x;
+        let t191 = t138 * minus_rate_dot_left_bar_along_x;
+        let t198 = c_left_bar_along_x * t109;
+        let t203 = s_left_bar_along_x * t117 + 9.81 * c_left_bar_along_x;
+        let t205 = minus_c_foot_along_x * t146 - (t5 * (t150 + t25) + t15 * t163)
+            + t81 * t198 + t122 * t203;
+        let t208 = t94 * t198 + t134 * t203;
+        let t211 = t104 * t198 + t138 * t203;
+        let t219 = s_left_bar_along_x * t109;
+        let t224 = c_left_bar_along_x * t117 - 9.81 * s_left_bar_along_x;
+        let t226 = t5 * (t125 + minus_rate_dot_left_bar_along_x) + t15 * (t151 + t25)
+            + minus_c_foot_along_x * t130 - t81 * t219 + t122 * t224;
+        let t229 = t134 * t224 - t94 * t219;
+        let t232 = t138 * t224 - t104 * t219;
+        let t235 = t109 + 0.31 * t146;
+        let t236 = 0.31 * t144 + t235;
+        let t239 = minus_rate_foot_along_x * t21;
+        let t255 = 0.31 * c_left_bar_along_x * t235;
+        let t260 = 0.31 * (0.31 * t163 - t203);
+        let t262 = acceleration[0] + t81 * t255 - t122 * t260;
+        let t265 = t94 * t255 - t134 * t260;
+        let t268 = t104 * t255 - t138 * t260;
+        let t269 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t269;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t273 = 0.31 * s_left_bar_along_y;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t53;
+        let t275 = s_foot_along_y * s_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (t275 * t269 * minus_gdrive_vz_along_y);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t68;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t305 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t307 = t299 * (minus_rate_foot_along_y * t305);
-        let t309 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t312 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t314 = t309 + t305 * t305 + t312 * t312;
-        let t320 = t299 * minus_rate_foot_along_y;
-        let t321 = minus_rate_foot_along_y * t320;
-        let t323 = acceleration[0] - (t299 * t314 - t321);
-        let t328 = t299 * (minus_rate_foot_along_y * t312);
-        let t331 = acceleration[2] - (t63 * t314 + t328 + t328);
-        let rate_dot_drive_along_y = acceleration[1] - (t307 - 0.31 * t64 * t314 + t307)
-            - minus_gdrive_vx_along_y * t323 - minus_gdrive_vz_along_y * t331;
+        let t282 = t273 * minus_rate_foot_along_y;
+        let t283 = s_foot_along_y * minus_rate_left_bar_along_y * t282;
+        let t284 = minus_gdrive_vz_along_y * t283;
+        let t286 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t287 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t289 = 0.31 * t52 * (t286 + t287);
+        let t294 = acceleration[0] - t273 * t287;
+        let t300 = acceleration[2] - (minus_gdrive_vz_along_y * t289 + t283 + t283);
+        let rate_dot_drive_along_y = acceleration[1] - (t284 - t289 + t284)
+            - minus_gdrive_vx_along_y * t294 - minus_gdrive_vz_along_y * t300;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let t339 = t97 * t104;
-        let t342 = minus_gfoot_vx_along_y * t339 + minus_gfoot_vz_along_y * t107;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t323
-            + minus_gfoot_vz_along_y * t331;
-        let t346 = t342 * minus_rate_dot_foot_along_y;
-        let t349 = (minus_gdrive_vy_along_x
-            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t104;
-        let t352 = minus_gfoot_vx_along_y * t349 + minus_gfoot_vz_along_y * t120;
-        let t353 = t352 * minus_rate_dot_foot_along_y;
-        let t356 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x) * t104;
-        let t359 = minus_gfoot_vx_along_y * t356 + minus_gfoot_vz_along_y * t130;
-        let t360 = t359 * minus_rate_dot_foot_along_y;
-        let t363 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t367 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t309;
-        let t373 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t374 = t342 * t373;
-        let t379 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t309 + t352 * t373;
-        let t380 = t359 * t373;
-        let t381 = minus_gleft_bar_vx_along_y * t339;
-        let t382 = 3.225806451612903 * t320;
-        let t383 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t384 = t382 * t383;
-        let t386 = minus_rate_left_bar_along_y * t383;
-        let t387 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t388 = t386 - t387;
-        let t390 = minus_rate_left_bar_along_y * t382;
-        let t392 = s_left_bar_along_y * t388 + c_left_bar_along_y * t390;
-        let t394 = t381 * t384 - t342 * t392;
-        let t395 = minus_gleft_bar_vx_along_y * t349;
-        let t398 = t395 * t384 - t352 * t392;
-        let t399 = minus_gleft_bar_vx_along_y * t356;
-        let t402 = t399 * t384 - t359 * t392;
-        let t403 = t386 + t388;
-        let t405 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t407 = t390 + t405 + t390;
-        let t409 = c_left_bar_along_y * t403 - s_left_bar_along_y * t407;
-        let t412 = 10.40582726326743 * (t320 * t320);
-        let t413 = t383 * t383;
-        let t414 = t412 - t413;
-        let t416 = t342 * t409 + t381 * t414;
-        let t419 = t352 * t409 + t395 * t414;
-        let t422 = t359 * t409 + t399 * t414;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t323;
-        let t425 = t384 - minus_rate_dot_left_bar_along_y;
-        let t427 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t430 = s_left_bar_along_y * t425 + c_left_bar_along_y * (t427 - t412);
-        let t432 = t381 * t387 - t342 * t430;
-        let t435 = t395 * t387 - t352 * t430;
-        let t438 = t399 * t387 - t359 * t430;
-        let t439 = t346 - t394;
-        let t440 = t353 - t398;
-        let t441 = t360 - t402;
-        let t442 = 3.225806451612903 * acceleration[0];
-        let t445 = t342 * t442 + t381 * t405;
-        let t448 = t352 * t442 + t395 * t405;
-        let t451 = t359 * t442 + t399 * t405;
-        let t452 = t381 * minus_rate_dot_left_bar_along_y;
-        let t453 = t395 * minus_rate_dot_left_bar_along_y;
-        let t454 = t399 * minus_rate_dot_left_bar_along_y;
-        let t455 = c_left_bar_along_y * t363;
-        let t457 = s_left_bar_along_y * t373;
-        let t459 = t342 * t455 + t381 * t457;
-        let t469 = minus_c_foot_along_y * t407 - (t64 * (t413 + t427) + t72 * t425)
-            + t352 * t455 + t395 * t457;
-        let t472 = t359 * t455 + t399 * t457;
-        let t473 = c_left_bar_along_y * t373;
-        let t475 = s_left_bar_along_y * t363;
-        let t477 = t381 * t473 - t342 * t475;
-        let t488 = t64 * (t384 + minus_rate_dot_left_bar_along_y) + t72 * (t412 + t427)
-            + minus_c_foot_along_y * t403 - t352 * t475 + t395 * t473;
-        let t491 = t399 * t473 - t359 * t475;
-        let t495 = 0.31 * t405 + t363 + 0.31 * t407;
-        let t512 = 0.31 * s_left_bar_along_z;
+        let t308 = t69 * t76;
+        let t311 = minus_gfoot_vx_along_y * t308 + minus_gfoot_vz_along_y * t79;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t294
+            + minus_gfoot_vz_along_y * t300;
+        let t315 = t311 * minus_rate_dot_foot_along_y;
+        let t318 = (minus_gdrive_vy_along_x
+            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t76;
+        let t321 = minus_gfoot_vx_along_y * t318 + minus_gfoot_vz_along_y * t92;
+        let t322 = t321 * minus_rate_dot_foot_along_y;
+        let t325 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
+            + minus_gdrive_vz_along_x) * t76;
+        let t328 = minus_gfoot_vx_along_y * t325 + minus_gfoot_vz_along_y * t102;
+        let t329 = t328 * minus_rate_dot_foot_along_y;
+        let t332 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
+        let t336 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t286;
+        let t342 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t343 = t311 * t342;
+        let t348 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t286 + t321 * t342;
+        let t349 = t328 * t342;
+        let t350 = minus_gleft_bar_vx_along_y * t308;
+        let t351 = 3.225806451612903 * t282;
+        let t352 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t353 = t351 * t352;
+        let t355 = minus_rate_left_bar_along_y * t352;
+        let t356 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t358 = t355 + t355 - t356;
+        let t359 = s_left_bar_along_y * t358;
+        let t361 = t350 * t353 - t311 * t359;
+        let t362 = minus_gleft_bar_vx_along_y * t318;
+        let t365 = t362 * t353 - t321 * t359;
+        let t366 = minus_gleft_bar_vx_along_y * t325;
+        let t369 = t366 * t353 - t328 * t359;
+        let t371 = minus_rate_left_bar_along_y * t351;
+        let t372 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t374 = t371 + t372 + t371;
+        let t376 = c_left_bar_along_y * t358 - s_left_bar_along_y * t374;
+        let t378 = t352 * t352;
+        let t379 = t286 - t378;
+        let t380 = t379 - t378;
+        let t382 = t311 * t376 + t350 * t380;
+        let t385 = t321 * t376 + t362 * t380;
+        let t388 = t328 * t376 + t366 * t380;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t294;
+        let t391 = t353 - minus_rate_dot_left_bar_along_y;
+        let t395 = s_left_bar_along_y * t391 + c_left_bar_along_y * (t287 - t379);
+        let t397 = t350 * t356 - t311 * t395;
+        let t400 = t362 * t356 - t321 * t395;
+        let t403 = t366 * t356 - t328 * t395;
+        let t404 = t315 - t361;
+        let t405 = t322 - t365;
+        let t406 = t329 - t369;
+        let t407 = 3.225806451612903 * acceleration[0];
+        let t410 = t311 * t407 + t350 * t372;
+        let t413 = t321 * t407 + t362 * t372;
+        let t416 = t328 * t407 + t366 * t372;
+        let t417 = t350 * minus_rate_dot_left_bar_along_y;
+        let t418 = t362 * minus_rate_dot_left_bar_along_y;
+        let t419 = t366 * minus_rate_dot_left_bar_along_y;
+        let t420 = c_left_bar_along_y * t332;
+        let t422 = s_left_bar_along_y * t342;
+        let t424 = t311 * t420 + t350 * t422;
+        let t434 = minus_c_foot_along_y * t374 - (t52 * (t378 + t287) + t275 * t391)
+            + t321 * t420 + t362 * t422;
+        let t437 = t328 * t420 + t366 * t422;
+        let t438 = c_left_bar_along_y * t342;
+        let t440 = s_left_bar_along_y * t332;
+        let t442 = t350 * t438 - t311 * t440;
+        let t453 = t52 * (t353 + minus_rate_dot_left_bar_along_y) + t275 * (t379 + t287)
+            + minus_c_foot_along_y * t358 - t321 * t440 + t362 * t438;
+        let t456 = t366 * t438 - t328 * t440;
+        let t460 = 0.31 * t372 + t332 + 0.31 * t374;
+        let t462 = minus_rate_foot_along_y * t282;
+        let t478 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t478;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t481 = s_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t63;
+        let t485 = s_foot_along_z * s_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_gdrive_vx_along_z * (t485 * t478));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t89;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t518 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t520 = t512 * (minus_rate_foot_along_z * t518);
-        let t522 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t524 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t527 = t522 * t522 + t524 + t518 * t518;
-        let t534 = t512 * (minus_rate_foot_along_z * t522);
-        let t537 = acceleration[0] - (t86 * t527 + t534 + t534);
-        let t540 = t512 * minus_rate_foot_along_z;
-        let t541 = minus_rate_foot_along_z * t540;
-        let t543 = acceleration[1] - (t512 * t527 - t541);
-        let rate_dot_drive_along_z = acceleration[2] - (t520 - 0.31 * t81 * t527 + t520)
-            - (minus_gdrive_vx_along_z * t537 + minus_gdrive_vy_along_z * t543);
-        let t547 = 9.81 + rate_dot_drive_along_z;
-        let rate_drive_along_z = twist[2]
-            - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let t555 = minus_gfoot_vx_along_z * t339 + minus_gfoot_vy_along_z * t105;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t537
-            + minus_gfoot_vy_along_z * t543;
-        let t559 = t555 * minus_rate_dot_foot_along_z;
-        let t562 = minus_gfoot_vx_along_z * t349 + minus_gfoot_vy_along_z * t116;
-        let t563 = t562 * minus_rate_dot_foot_along_z;
-        let t566 = minus_gfoot_vx_along_z * t356 + minus_gfoot_vy_along_z * t126;
-        let t567 = t566 * minus_rate_dot_foot_along_z;
-        let t568 = minus_c_foot_along_z * t547;
-        let t573 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t524;
-        let t576 = s_foot_along_z * t547;
-        let t577 = t555 * t576;
-        let t578 = t562 * t576;
-        let t583 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t524 + t566 * t576;
-        let t584 = minus_gleft_bar_vy_along_z * t105;
-        let t585 = 3.225806451612903 * t540;
-        let t586 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t587 = t585 * t586;
-        let t589 = minus_rate_left_bar_along_z * t586;
-        let t590 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t591 = t589 - t590;
-        let t593 = minus_rate_left_bar_along_z * t585;
-        let t595 = s_left_bar_along_z * t591 + c_left_bar_along_z * t593;
-        let t597 = t584 * t587 - t555 * t595;
-        let t598 = minus_gleft_bar_vy_along_z * t116;
-        let t601 = t598 * t587 - t562 * t595;
-        let t602 = minus_gleft_bar_vy_along_z * t126;
-        let t605 = t602 * t587 - t566 * t595;
-        let t606 = t589 + t591;
-        let t608 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t610 = t593 + t608 + t593;
-        let t612 = c_left_bar_along_z * t606 - s_left_bar_along_z * t610;
-        let t615 = 10.40582726326743 * (t540 * t540);
-        let t616 = t586 * t586;
-        let t617 = t615 - t616;
-        let t619 = t555 * t612 + t584 * t617;
-        let t622 = t562 * t612 + t598 * t617;
-        let t625 = t566 * t612 + t602 * t617;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t543;
-        let t628 = t587 - minus_rate_dot_left_bar_along_z;
-        let t630 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t633 = s_left_bar_along_z * t628 + c_left_bar_along_z * (t630 - t615);
-        let t635 = t584 * t590 - t555 * t633;
-        let t638 = t598 * t590 - t562 * t633;
-        let t641 = t602 * t590 - t566 * t633;
-        let t642 = t559 - t597;
-        let t643 = t563 - t601;
-        let t644 = t567 - t605;
-        let t645 = 3.225806451612903 * acceleration[1];
-        let t648 = t555 * t645 + t584 * t608;
-        let t651 = t562 * t645 + t598 * t608;
-        let t654 = t566 * t645 + t602 * t608;
-        let t655 = t584 * minus_rate_dot_left_bar_along_z;
-        let t656 = t598 * minus_rate_dot_left_bar_along_z;
-        let t657 = t602 * minus_rate_dot_left_bar_along_z;
-        let t658 = c_left_bar_along_z * t568;
-        let t660 = s_left_bar_along_z * t576;
-        let t662 = t555 * t658 + t584 * t660;
-        let t665 = t562 * t658 + t598 * t660;
-        let t675 = minus_c_foot_along_z * t610 - (t81 * (t616 + t630) + t93 * t628)
-            + t566 * t658 + t602 * t660;
-        let t676 = c_left_bar_along_z * t576;
-        let t678 = s_left_bar_along_z * t568;
-        let t680 = t584 * t676 - t555 * t678;
-        let t683 = t598 * t676 - t562 * t678;
-        let t694 = t81 * (t587 + minus_rate_dot_left_bar_along_z) + t93 * (t615 + t630)
-            + minus_c_foot_along_z * t606 - t566 * t678 + t602 * t676;
-        let t698 = 0.31 * t608 + t568 + 0.31 * t610;
+        let t491 = 0.31 * s_left_bar_along_z * minus_rate_foot_along_z;
+        let t492 = t481 * t491;
+        let t493 = minus_gdrive_vx_along_z * t492;
+        let t495 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t496 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t498 = 0.31 * t62 * (t495 + t496);
+        let t505 = acceleration[0] - (minus_gdrive_vx_along_z * t498 + t492 + t492);
+        let t507 = minus_gdrive_vy_along_z * twist[1];
+        let t509 = acceleration[1] - t481 * t507;
+        let rate_dot_drive_along_z = acceleration[2] - (t493 - t498 + t493)
+            - (minus_gdrive_vx_along_z * t505 + minus_gdrive_vy_along_z * t509);
+        let t513 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_z = twist[2] - (minus_gdrive_vx_along_z * twist[0] + t507);
+        let t520 = minus_gfoot_vx_along_z * t308 + minus_gfoot_vy_along_z * t77;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t505
+            + minus_gfoot_vy_along_z * t509;
+        let t524 = t520 * minus_rate_dot_foot_along_z;
+        let t527 = minus_gfoot_vx_along_z * t318 + minus_gfoot_vy_along_z * t88;
+        let t528 = t527 * minus_rate_dot_foot_along_z;
+        let t531 = minus_gfoot_vx_along_z * t325 + minus_gfoot_vy_along_z * t98;
+        let t532 = t531 * minus_rate_dot_foot_along_z;
+        let t533 = minus_c_foot_along_z * t513;
+        let t538 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t495;
+        let t541 = s_foot_along_z * t513;
+        let t542 = t520 * t541;
+        let t543 = t527 * t541;
+        let t548 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t495 + t531 * t541;
+        let t549 = minus_gleft_bar_vy_along_z * t77;
+        let t550 = 3.225806451612903 * t491;
+        let t551 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t552 = t550 * t551;
+        let t554 = minus_rate_left_bar_along_z * t551;
+        let t555 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t557 = t554 + t554 - t555;
+        let t558 = s_left_bar_along_z * t557;
+        let t560 = t549 * t552 - t520 * t558;
+        let t561 = minus_gleft_bar_vy_along_z * t88;
+        let t564 = t561 * t552 - t527 * t558;
+        let t565 = minus_gleft_bar_vy_along_z * t98;
+        let t568 = t565 * t552 - t531 * t558;
+        let t570 = minus_rate_left_bar_along_z * t550;
+        let t571 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t573 = t570 + t571 + t570;
+        let t575 = c_left_bar_along_z * t557 - s_left_bar_along_z * t573;
+        let t577 = t551 * t551;
+        let t578 = t495 - t577;
+        let t579 = t578 - t577;
+        let t581 = t520 * t575 + t549 * t579;
+        let t584 = t527 * t575 + t561 * t579;
+        let t587 = t531 * t575 + t565 * t579;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t509;
+        let t590 = t552 - minus_rate_dot_left_bar_along_z;
+        let t594 = s_left_bar_along_z * t590 + c_left_bar_along_z * (t496 - t578);
+        let t596 = t549 * t555 - t520 * t594;
+        let t599 = t561 * t555 - t527 * t594;
+        let t602 = t565 * t555 - t531 * t594;
+        let t603 = t524 - t560;
+        let t604 = t528 - t564;
+        let t605 = t532 - t568;
+        let t606 = 3.225806451612903 * acceleration[1];
+        let t609 = t520 * t606 + t549 * t571;
+        let t612 = t527 * t606 + t561 * t571;
+        let t615 = t531 * t606 + t565 * t571;
+        let t616 = t549 * minus_rate_dot_left_bar_along_z;
+        let t617 = t561 * minus_rate_dot_left_bar_along_z;
+        let t618 = t565 * minus_rate_dot_left_bar_along_z;
+        let t619 = c_left_bar_along_z * t533;
+        let t621 = s_left_bar_along_z * t541;
+        let t623 = t520 * t619 + t549 * t621;
+        let t626 = t527 * t619 + t561 * t621;
+        let t636 = minus_c_foot_along_z * t573 - (t62 * (t577 + t496) + t485 * t590)
+            + t531 * t619 + t565 * t621;
+        let t637 = c_left_bar_along_z * t541;
+        let t639 = s_left_bar_along_z * t533;
+        let t641 = t549 * t637 - t520 * t639;
+        let t644 = t561 * t637 - t527 * t639;
+        let t655 = t62 * (t552 + minus_rate_dot_left_bar_along_z) + t485 * (t578 + t496)
+            + minus_c_foot_along_z * t557 - t531 * t639 + t565 * t637;
+        let t659 = 0.31 * t571 + t533 + 0.31 * t573;
+        let t661 = minus_rate_foot_along_z * t491;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, t113, t136 + t109 * t137, t147,
-                rate_dot_drive_along_x, t163, -t185, t200, t207, t213, t220, t236, t257, -t147,
-                rate_dot_drive_along_x, t163, -t185, t200, t207, t213, t220, t236, t257, -t147,
-                rate_dot_drive_along_x, t113, t136 + t109 * t267 - t150 * t48,
-                -(t147 + 0.31 * t200), t292, 0.0, 0.0, 0.0, 0.0, 0.0, t346, t342 * t363, t374, 0.0,
-                t394, -t416, t432, t439, t445, t452, t459, t477, -t374, 0.0, t394, -t416, t432,
-                t439, t445, t452, t459, t477, -t374, 0.0, t346, t342 * t495 - t381 * t321,
-                -(t374 + 0.31 * t432), t292, 0.0, 0.0, 0.0, 0.0, 0.0, t559, t555 * t568, t577, 0.0,
-                t597, -t619, t635, t642, t648, t655, t662, t680, -t577, 0.0, t597, -t619, t635,
-                t642, t648, t655, t662, t680, -t577, 0.0, t559, t555 * t698 - t584 * t541,
-                -(t577 + 0.31 * t635), t292, t292,
+                ::overact::math::sign(rate_drive_along_x), 1.0, t85, t108 + t81 * t109, t119,
+                rate_dot_drive_along_x, t133, -t154, t169, t176, t182, t189, t205, t226, -t119,
+                rate_dot_drive_along_x, t133, -t154, t169, t176, t182, t189, t205, t226, -t119,
+                rate_dot_drive_along_x, t85, t108 + t81 * t236 - t122 * t239, -(t119 + 0.31 * t169),
+                t262, 0.0, 0.0, 0.0, 0.0, 0.0, t315, t311 * t332, t343, 0.0, t361, -t382, t397,
+                t404, t410, t417, t424, t442, -t343, 0.0, t361, -t382, t397, t404, t410, t417, t424,
+                t442, -t343, 0.0, t315, t311 * t460 - t350 * t462, -(t343 + 0.31 * t397), t262, 0.0,
+                0.0, 0.0, 0.0, 0.0, t524, t520 * t533, t542, 0.0, t560, -t581, t596, t603, t609,
+                t616, t623, t641, -t542, 0.0, t560, -t581, t596, t603, t609, t616, t623, t641,
+                -t542, 0.0, t524, t520 * t659 - t549 * t661, -(t542 + 0.31 * t596), t262, t262,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t123, t122 * t137, t148, 0.0, t167, -t188, t203, t208,
-                t216, t221, t239, t260, -t148, 0.0, t167, -t188, t203, t208, t216, t221, t239, t260,
-                -t148, 0.0, t123, t122 * t267 - t164 * t48, -(t148 + 0.31 * t203), t295,
+                0.0, 0.0, 0.0, 0.0, 0.0, t95, t94 * t109, t120, 0.0, t137, -t157, t172, t177, t185,
+                t190, t208, t229, -t120, 0.0, t137, -t157, t172, t177, t185, t190, t208, t229,
+                -t120, 0.0, t95, t94 * t236 - t134 * t239, -(t120 + 0.31 * t172), t265,
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, t353, t367 + t352 * t363, t379,
-                rate_dot_drive_along_y, t398, -t419, t435, t440, t448, t453, t469, t488, -t379,
-                rate_dot_drive_along_y, t398, -t419, t435, t440, t448, t453, t469, t488, -t379,
-                rate_dot_drive_along_y, t353, t367 + t352 * t495 - t395 * t321,
-                -(t379 + 0.31 * t435), t295, 0.0, 0.0, 0.0, 0.0, 0.0, t563, t562 * t568, t578, 0.0,
-                t601, -t622, t638, t643, t651, t656, t665, t683, -t578, 0.0, t601, -t622, t638,
-                t643, t651, t656, t665, t683, -t578, 0.0, t563, t562 * t698 - t598 * t541,
-                -(t578 + 0.31 * t638), t295, t295,
+                ::overact::math::sign(rate_drive_along_y), 1.0, t322, t336 + t321 * t332, t348,
+                rate_dot_drive_along_y, t365, -t385, t400, t405, t413, t418, t434, t453, -t348,
+                rate_dot_drive_along_y, t365, -t385, t400, t405, t413, t418, t434, t453, -t348,
+                rate_dot_drive_along_y, t322, t336 + t321 * t460 - t362 * t462,
+                -(t348 + 0.31 * t400), t265, 0.0, 0.0, 0.0, 0.0, 0.0, t528, t527 * t533, t543, 0.0,
+                t564, -t584, t599, t604, t612, t617, t626, t644, -t543, 0.0, t564, -t584, t599,
+                t604, t612, t617, t626, t644, -t543, 0.0, t528, t527 * t659 - t561 * t661,
+                -(t543 + 0.31 * t599), t265, t265,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t133, t132 * t137, t149, 0.0, t171, -t191, t206, t209,
-                t219, t222, t242, t263, -t149, 0.0, t171, -t191, t206, t209, t219, t222, t242, t263,
-                -t149, 0.0, t133, t132 * t267 - t168 * t48, -(t149 + 0.31 * t206), t298, 0.0, 0.0,
-                0.0, 0.0, 0.0, t360, t359 * t363, t380, 0.0, t402, -t422, t438, t441, t451, t454,
-                t472, t491, -t380, 0.0, t402, -t422, t438, t441, t451, t454, t472, t491, -t380, 0.0,
-                t360, t359 * t495 - t399 * t321, -(t380 + 0.31 * t438), t298, t547,
+                0.0, 0.0, 0.0, 0.0, 0.0, t105, t104 * t109, t121, 0.0, t141, -t160, t175, t178,
+                t188, t191, t211, t232, -t121, 0.0, t141, -t160, t175, t178, t188, t191, t211, t232,
+                -t121, 0.0, t105, t104 * t236 - t138 * t239, -(t121 + 0.31 * t175), t268, 0.0, 0.0,
+                0.0, 0.0, 0.0, t329, t328 * t332, t349, 0.0, t369, -t388, t403, t406, t416, t419,
+                t437, t456, -t349, 0.0, t369, -t388, t403, t406, t416, t419, t437, t456, -t349, 0.0,
+                t329, t328 * t460 - t366 * t462, -(t349 + 0.31 * t403), t268, t513,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, t567, t573 + t566 * t568, t583,
-                t547, t605, -t625, t641, t644, t654, t657, t675, t694, -t583, t547, t605, -t625,
-                t641, t644, t654, t657, t675, t694, -t583, t547, t567,
-                t573 + t566 * t698 - t602 * t541, -(t583 + 0.31 * t641), t298, t298,
+                ::overact::math::sign(rate_drive_along_z), 1.0, t532, t538 + t531 * t533, t548,
+                t513, t568, -t587, t602, t605, t615, t618, t636, t655, -t548, t513, t568, -t587,
+                t602, t605, t615, t618, t636, t655, -t548, t513, t532,
+                t538 + t531 * t659 - t565 * t661, -(t548 + 0.31 * t602), t268, t268,
             ],
         ])
     }
@@ -3486,7 +3129,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 790 operations (279 additions, 498 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 675 intermediates.
+    /// 737 operations (265 additions, 462 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 622 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3497,437 +3140,423 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t3 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t3, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t3);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t5 = 0.31 * c_left_bar_along_x;
-        let minus_s_foot_along_x = pose[1] / t5;
-        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t8, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t8);
-        let t10 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t10, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
-        let t14 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t14, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t14);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t19 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t19, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t19);
-        let t21 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t21, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t21;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t25 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t25);
-        let t29 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t29 * t25;
+        let t2 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t3 = 1.0 - t2;
+        ::overact::guard::reach(t3, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t3);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t7 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t8 = t3 * t7;
+        let t9 = 1.0 - t8;
+        ::overact::guard::reach(t9, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t9);
+        let t11 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t11;
+        let t13 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t14 = 1.0 - t13;
+        ::overact::guard::reach(t14, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t14);
+        let t16 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t16, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t16;
+        let t18 = 1.0 - t7;
+        ::overact::guard::reach(t18, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t18);
+        let t20 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t20, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t20;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t35 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t35, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t35);
+        let t24 = t9 * t13;
+        let t25 = 1.0 - t24;
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t25);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t40 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t40, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t40);
-        let t42 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t42, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t42;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t30 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t30, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t30);
+        let t32 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t32, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t32;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t46 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t49 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t49);
-        let t53 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t53 * t49;
-        let t57 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t36 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t39 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t63 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t63);
-        let t67 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t67 * t63;
-        let t71 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t73 = t57 - gdrive_vy_along_x * t46 + gdrive_vz_along_x * t71;
-        ::overact::guard::platform(t73, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t73, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t73, 1.0, "kept actuators")?;
-        let t74 = 1.0 / t73;
-        let t75 = t46 * t74;
-        let t77 = t71 * t74;
-        let t79 = minus_gfoot_vy_along_x * t75 - minus_gfoot_vz_along_x * t77;
-        let t86 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t90 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t45 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t47 = t39 - gdrive_vy_along_x * t36 + gdrive_vz_along_x * t45;
+        ::overact::guard::platform(t47, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t47, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t47, 1.0, "kept actuators")?;
+        let t48 = 1.0 / t47;
+        let t49 = t36 * t48;
+        let t51 = gdrive_vy_along_x * gdrive_vz_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t14 * t51);
+        let t54 = t45 * t48;
+        let t56 = minus_gfoot_vy_along_x * t49 - minus_gfoot_vz_along_x * t54;
+        let t58 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let t62 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let t63 = gdrive_vy_along_x + gdrive_vx_along_y + t62;
+        let t67 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t90, 1.0, "actuators")?;
-        ::overact::guard::platform(t90, 1.0, "actuators")?;
-        let t91 = 1.0 / t90;
-        let t92 = t86 * t91;
-        let t94 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t86 * t92;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        let t95 = 1.0 / t94;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t63;
-        let t103 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z;
-        let t104 = t103 * t91;
-        let t111 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t86 * t104;
-        let t112 = t111 * t95;
-        let t114 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t103 * t104 - t111 * t112;
-        ::overact::guard::platform(t114, 1.0, "actuators")?;
-        ::overact::guard::platform(t114, 1.0, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t123 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        ::overact::guard::platform(t67, 1.0, "actuators")?;
+        ::overact::guard::platform(t67, 1.0, "actuators")?;
+        let t68 = 1.0 / t67;
+        let t69 = t63 * t68;
+        let t71 = t58 + gdrive_vy_along_z * gdrive_vy_along_z - t63 * t69;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = 1.0 / t71;
+        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
+        let t79 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t81 = gdrive_vz_along_x + t79 + gdrive_vx_along_z;
+        let t82 = t81 * t68;
+        let t88 = t51 + gdrive_vz_along_y + gdrive_vy_along_z - t63 * t82;
+        let t89 = t88 * t72;
+        let t91 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t81 * t82 - t88 * t89;
+        ::overact::guard::platform(t91, 1.0, "actuators")?;
+        ::overact::guard::platform(t91, 1.0, "actuators")?;
+        let t92 = 1.0 / t91;
+        let t100 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t131 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t123 * t92;
-        let t134 = t115
+        let t108 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t100 * t69;
+        let t111 = t92
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t123 * t104 - t112 * t131);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t134;
-        let t136 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t138 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t140 = t136 * t136 + t138 * t138;
-        let t143 = t95 * t131 - t112 * t134;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t143
-            + minus_gfoot_vz_along_x * t134;
-        let t147 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t148 = t140 + t147;
-        let t151 = pose[2] * (minus_rate_foot_along_x * t138);
-        let t153 = pose[1] * t148 + t151 + t151;
-        let t156 = pose[2] * (minus_rate_foot_along_x * t136);
-        let t162 = pose[2] * minus_rate_foot_along_x;
-        let t163 = minus_rate_foot_along_x * t162;
-        let t165 = t163 - pose[2] * t148;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * t153
-            - (t156 - 0.31 * t10 * t148 + t156) - gdrive_vz_along_x * t165;
-        let t168 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t174 = t123 * t91 - t92 * t143 - t104 * t134;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t174
-            + minus_gfoot_vz_along_y * t134;
-        let t178 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t25;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t174;
-        let t181 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t184 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t186 = t178 + t181 * t181 + t184 * t184;
-        let t189 = pose[0] * (minus_rate_foot_along_y * t184);
-        let t191 = pose[2] * t186 + t189 + t189;
-        let t193 = pose[0] * minus_rate_foot_along_y;
-        let t194 = minus_rate_foot_along_y * t193;
-        let t196 = t194 - pose[0] * t186;
-        let t199 = pose[0] * (minus_rate_foot_along_y * t181);
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t191
-            - (gdrive_vx_along_y * t196 + t199 - 0.31 * t21 * t186 + t199);
-        let t206 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t49;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t143;
-        let t210 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t174
-            + minus_gfoot_vy_along_z * t143;
-        let t215 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t217 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t219 = t210 * t210 + t215 + t217 * t217;
-        let t222 = pose[1] * (minus_rate_foot_along_z * t210);
-        let t224 = pose[0] * t219 + t222 + t222;
-        let t226 = pose[1] * minus_rate_foot_along_z;
-        let t227 = minus_rate_foot_along_z * t226;
-        let t229 = t227 - pose[1] * t219;
-        let t233 = pose[1] * (minus_rate_foot_along_z * t217);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t224 - gdrive_vy_along_z * t229
-            - (t233 - 0.31 * t42 * t219 + t233);
-        let t239 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t245 = t168 + gdrive_vx_along_y * t206 + gdrive_vx_along_z * t239;
-        let t247 = gdrive_vy_along_x * t168 + t206 + gdrive_vy_along_z * t239
-            - t92 * t245;
-        let t257 = t115
-            * (gdrive_vz_along_x * t168 + gdrive_vz_along_y * t206 + t239 - t104 * t245
-                - t112 * t247);
-        let t259 = t95 * t247 - t112 * t257;
-        let t262 = t257 - t165;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t259 + t153)
-            + minus_gfoot_vz_along_x * t262;
-        let t265 = t79 * minus_rate_dot_foot_along_x;
-        let t268 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t74;
-        let t272 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t74;
-        let t274 = minus_gfoot_vz_along_x * t268 - minus_gfoot_vy_along_x * t272;
-        let t275 = t274 * minus_rate_dot_foot_along_x;
-        let t278 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t74;
-        let t282 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t74;
-        let t284 = minus_gfoot_vy_along_x * t278 - minus_gfoot_vz_along_x * t282;
-        let t285 = t284 * minus_rate_dot_foot_along_x;
-        let t286 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t290 = c_foot_along_x * t147
+                - t100 * t82 - t89 * t108);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t111;
+        let t113 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t116 = t72 * t108 - t89 * t111;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t116
+            + minus_gfoot_vz_along_x * t111;
+        let t120 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t121 = t113 + t120;
+        let t124 = pose[2] * t113;
+        let rate_dot_drive_along_x = t58 * (0.31 * t16 * t121)
+            + gdrive_vz_along_x * t124;
+        let t127 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t18 * t79);
+        let t135 = t100 * t68 - t69 * t116 - t82 * t111;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t135
+            + minus_gfoot_vz_along_y * t111;
+        let t139 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t135;
+        let t141 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t142 = t139 + t141;
+        let t145 = pose[0] * minus_rate_foot_along_y;
+        let t146 = c_foot_along_y * minus_rate_left_bar_along_y * t145;
+        let t148 = pose[2] * t142 + t146 + t146;
+        let t150 = pose[0] * t141;
+        let t152 = gdrive_vz_along_y * t146;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t148
+            - (t152 - 0.31 * t20 * t142 + t152 - gdrive_vx_along_y * t150);
+        let t159 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t30 * t62);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t135
+            + minus_gfoot_vy_along_z * t116;
+        let t166 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t116;
+        let t168 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t169 = t166 + t168;
+        let t172 = pose[1] * minus_rate_foot_along_z;
+        let t173 = c_foot_along_z * minus_rate_left_bar_along_z * t172;
+        let t175 = pose[0] * t169 + t173 + t173;
+        let t177 = pose[1] * t168;
+        let t180 = gdrive_vx_along_z * t173;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t175 + gdrive_vy_along_z * t177
+            - (t180 - 0.31 * t32 * t169 + t180);
+        let t186 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t192 = t127 + gdrive_vx_along_y * t159 + gdrive_vx_along_z * t186;
+        let t194 = gdrive_vy_along_x * t127 + t159 + gdrive_vy_along_z * t186
+            - t69 * t192;
+        let t204 = t92
+            * (gdrive_vz_along_x * t127 + gdrive_vz_along_y * t159 + t186 - t82 * t192
+                - t89 * t194);
+        let t206 = t72 * t194 - t89 * t204;
+        let t209 = pose[2] * minus_rate_foot_along_x;
+        let t210 = c_foot_along_x * minus_rate_left_bar_along_x * t209;
+        let t215 = t204 + t124;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t206 + pose[1] * t121 + t210 + t210) + minus_gfoot_vz_along_x * t215;
+        let t218 = t56 * minus_rate_dot_foot_along_x;
+        let t221 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t48;
+        let t225 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t48;
+        let t227 = minus_gfoot_vz_along_x * t221 - minus_gfoot_vy_along_x * t225;
+        let t228 = t227 * minus_rate_dot_foot_along_x;
+        let t231 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t48;
+        let t235 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t48;
+        let t237 = minus_gfoot_vy_along_x * t231 - minus_gfoot_vz_along_x * t235;
+        let t238 = t237 * minus_rate_dot_foot_along_x;
+        let t239 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t243 = c_foot_along_x * t120
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t297 = c_foot_along_x * actuator_accelerations[0];
-        let t299 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t147 - t79 * t297;
-        let t300 = t274 * t297;
-        let t301 = t284 * t297;
-        let t302 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t303 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t304 = minus_rate_left_bar_along_x * t303;
-        let t305 = t302 + t304;
-        let t307 = 3.225806451612903 * t162;
-        let t308 = minus_rate_left_bar_along_x * t307;
-        let t310 = minus_s_left_bar_along_x * t305 + c_left_bar_along_x * t308;
-        let t312 = minus_gleft_bar_vz_along_x * t77;
-        let t313 = t307 * t303;
-        let t315 = t79 * t310 + t312 * t313;
-        let t316 = minus_gleft_bar_vz_along_x * t268;
-        let t319 = t316 * t313 - t274 * t310;
-        let t321 = minus_gleft_bar_vz_along_x * t282;
-        let t323 = t284 * t310 + t321 * t313;
-        let t324 = t304 + t305;
-        let t326 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t328 = t308 + t308 - t326;
-        let t330 = c_left_bar_along_x * t324 - minus_s_left_bar_along_x * t328;
-        let t333 = 10.40582726326743 * (t162 * t162);
-        let t335 = t333 - t303 * t303;
-        let t337 = t79 * t330 - t312 * t335;
-        let t340 = t274 * t330 + t316 * t335;
-        let t343 = t284 * t330 - t321 * t335;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t262;
-        let t345 = t313 + minus_rate_dot_left_bar_along_x;
-        let t349 = minus_s_left_bar_along_x * t345 + c_left_bar_along_x * (t140 - t333);
-        let t352 = t79 * t349 - t312 * t302;
-        let t355 = t274 * t349 + t316 * t302;
-        let t358 = t284 * t349 - t321 * t302;
-        let t359 = t315 - t265;
-        let t360 = t275 + t319;
-        let t361 = t323 - t285;
-        let t363 = 3.225806451612903 * t257;
-        let t365 = t312 * t326 - t79 * t363;
-        let t368 = t274 * t363 + t316 * t326;
-        let t371 = t321 * t326 - t284 * t363;
-        let t372 = t312 * minus_rate_dot_left_bar_along_x;
-        let t373 = t316 * minus_rate_dot_left_bar_along_x;
-        let t374 = t321 * minus_rate_dot_left_bar_along_x;
-        let t383 = c_left_bar_along_x * t286;
-        let t385 = minus_s_foot_along_x * t328
-            - (t10
-                * (3.225806451612903
-                    * (c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x)))
-                + t67 * t345) + t79 * t383;
-        let t388 = minus_s_left_bar_along_x * t297 - 9.81 * c_left_bar_along_x;
-        let t390 = t385 - t312 * t388;
-        let t393 = t274 * t383 + t316 * t388;
-        let t396 = t284 * t383 - t321 * t388;
-        let t404 = minus_s_left_bar_along_x * t286;
-        let t409 = c_left_bar_along_x * t297 + 31.64516129032258 * pose[2];
-        let t411 = t10 * (minus_rate_dot_left_bar_along_x - t313) - t67 * (t333 + t140)
-            - minus_s_foot_along_x * t324 + t79 * t404 + t312 * t409;
-        let t414 = t274 * t404 - t316 * t409;
-        let t417 = t284 * t404 + t321 * t409;
-        let t419 = t286 + 0.31 * t328;
-        let t421 = t419 - 0.31 * t326;
-        let t442 = t91 * t245 - t92 * t259 - t104 * t257;
-        let t443 = t5 * t419;
-        let t448 = 0.31 * (t388 - 0.31 * t345);
-        let t450 = t442 + t79 * t443 - t312 * t448;
-        let t453 = t274 * t443 + t316 * t448;
-        let t456 = t284 * t443 - t321 * t448;
-        let t458 = t57 * t74;
-        let t461 = minus_gfoot_vx_along_y * t458 + minus_gfoot_vz_along_y * t77;
-        let t462 = t442 - t196;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t462
-            + minus_gfoot_vz_along_y * (t257 + t191);
-        let t467 = t461 * minus_rate_dot_foot_along_y;
-        let t470 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t74;
-        let t473 = minus_gfoot_vx_along_y * t470 + minus_gfoot_vz_along_y * t268;
-        let t474 = t473 * minus_rate_dot_foot_along_y;
-        let t477 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t74;
-        let t480 = minus_gfoot_vx_along_y * t477 + minus_gfoot_vz_along_y * t282;
-        let t481 = t480 * minus_rate_dot_foot_along_y;
-        let t484 = minus_s_foot_along_y * actuator_accelerations[1]
+        let t250 = c_foot_along_x * actuator_accelerations[0];
+        let t252 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t120 - t56 * t250;
+        let t253 = t227 * t250;
+        let t254 = t237 * t250;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t256 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t257 = minus_rate_left_bar_along_x * t256;
+        let t258 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t260 = t257 + t258 + t257;
+        let t261 = minus_s_left_bar_along_x * t260;
+        let t263 = minus_gleft_bar_vz_along_x * t54;
+        let t264 = 3.225806451612903 * t209;
+        let t265 = t264 * t256;
+        let t267 = t56 * t261 + t263 * t265;
+        let t268 = minus_gleft_bar_vz_along_x * t221;
+        let t271 = t268 * t265 - t227 * t261;
+        let t273 = minus_gleft_bar_vz_along_x * t235;
+        let t275 = t237 * t261 + t273 * t265;
+        let t277 = minus_rate_left_bar_along_x * t264;
+        let t278 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t280 = t277 + t277 - t278;
+        let t282 = c_left_bar_along_x * t260 - minus_s_left_bar_along_x * t280;
+        let t284 = t8 * t120;
+        let t285 = t113 - t284;
+        let t286 = t120 + t285;
+        let t287 = t284 + t113;
+        let t288 = t287 - t286;
+        let t290 = t56 * t282 - t263 * t288;
+        let t293 = t227 * t282 + t268 * t288;
+        let t296 = t237 * t282 - t273 * t288;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t215;
+        let t298 = t265 + minus_rate_dot_left_bar_along_x;
+        let t301 = minus_s_left_bar_along_x * t298 + c_left_bar_along_x * t285;
+        let t304 = t56 * t301 - t263 * t258;
+        let t307 = t227 * t301 + t268 * t258;
+        let t310 = t237 * t301 - t273 * t258;
+        let t311 = t267 - t218;
+        let t312 = t228 + t271;
+        let t313 = t275 - t238;
+        let t315 = 3.225806451612903 * t204;
+        let t317 = t263 * t278 - t56 * t315;
+        let t320 = t227 * t315 + t268 * t278;
+        let t323 = t273 * t278 - t237 * t315;
+        let t324 = t263 * minus_rate_dot_left_bar_along_x;
+        let t325 = t268 * minus_rate_dot_left_bar_along_x;
+        let t326 = t273 * minus_rate_dot_left_bar_along_x;
+        let t329 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t333 = c_left_bar_along_x * t239;
+        let t338 = minus_s_left_bar_along_x * t250 - 9.81 * c_left_bar_along_x;
+        let t340 = minus_s_foot_along_x * t280 - (t16 * t286 + t329 * t298) + t56 * t333
+            - t263 * t338;
+        let t343 = t227 * t333 + t268 * t338;
+        let t346 = t237 * t333 - t273 * t338;
+        let t353 = minus_s_left_bar_along_x * t239;
+        let t358 = c_left_bar_along_x * t250 + 31.64516129032258 * pose[2];
+        let t360 = t16 * (minus_rate_dot_left_bar_along_x - t265) - t329 * t287
+            - minus_s_foot_along_x * t260 + t56 * t353 + t263 * t358;
+        let t363 = t227 * t353 - t268 * t358;
+        let t366 = t237 * t353 + t273 * t358;
+        let t368 = t239 + 0.31 * t280;
+        let t370 = t368 - 0.31 * t278;
+        let t373 = minus_rate_foot_along_x * t209;
+        let t392 = t68 * t192 - t69 * t206 - t82 * t204;
+        let t393 = t11 * t368;
+        let t398 = 0.31 * (t338 - 0.31 * t298);
+        let t400 = t392 + t56 * t393 - t263 * t398;
+        let t403 = t227 * t393 + t268 * t398;
+        let t406 = t237 * t393 - t273 * t398;
+        let t408 = t39 * t48;
+        let t411 = minus_gfoot_vx_along_y * t408 + minus_gfoot_vz_along_y * t54;
+        let t412 = t392 + t150;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t412
+            + minus_gfoot_vz_along_y * (t204 + t148);
+        let t417 = t411 * minus_rate_dot_foot_along_y;
+        let t420 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t48;
+        let t423 = minus_gfoot_vx_along_y * t420 + minus_gfoot_vz_along_y * t221;
+        let t424 = t423 * minus_rate_dot_foot_along_y;
+        let t427 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t48;
+        let t430 = minus_gfoot_vx_along_y * t427 + minus_gfoot_vz_along_y * t235;
+        let t431 = t430 * minus_rate_dot_foot_along_y;
+        let t434 = minus_s_foot_along_y * actuator_accelerations[1]
             - 9.81 * c_foot_along_y;
-        let t489 = c_foot_along_y * t178
+        let t439 = c_foot_along_y * t139
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t494 = 9.81 * minus_s_foot_along_y
+        let t444 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t495 = t461 * t494;
-        let t500 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t178 - t473 * t494;
-        let t501 = t480 * t494;
-        let t502 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t503 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t504 = minus_rate_left_bar_along_y * t503;
-        let t505 = t502 + t504;
-        let t507 = 3.225806451612903 * t193;
-        let t508 = minus_rate_left_bar_along_y * t507;
-        let t510 = minus_s_left_bar_along_y * t505 + c_left_bar_along_y * t508;
-        let t512 = minus_gleft_bar_vx_along_y * t458;
-        let t513 = t507 * t503;
-        let t515 = t461 * t510 - t512 * t513;
-        let t516 = minus_gleft_bar_vx_along_y * t470;
-        let t519 = t516 * t513 - t473 * t510;
-        let t521 = minus_gleft_bar_vx_along_y * t477;
-        let t523 = t480 * t510 - t521 * t513;
-        let t524 = t504 + t505;
-        let t526 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t528 = t508 + t508 - t526;
-        let t530 = c_left_bar_along_y * t524 - minus_s_left_bar_along_y * t528;
-        let t533 = 10.40582726326743 * (t193 * t193);
-        let t534 = t503 * t503;
-        let t535 = t533 - t534;
-        let t537 = t461 * t530 + t512 * t535;
-        let t540 = t473 * t530 + t516 * t535;
-        let t543 = t480 * t530 + t521 * t535;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t462;
-        let t545 = t513 + minus_rate_dot_left_bar_along_y;
-        let t547 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t550 = minus_s_left_bar_along_y * t545 + c_left_bar_along_y * (t547 - t533);
-        let t553 = t461 * t550 + t512 * t502;
-        let t556 = t473 * t550 + t516 * t502;
-        let t559 = t480 * t550 + t521 * t502;
-        let t560 = t467 - t515;
-        let t561 = t474 + t519;
-        let t562 = t481 - t523;
-        let t563 = 3.225806451612903 * t442;
-        let t566 = t461 * t563 + t512 * t526;
-        let t569 = t473 * t563 + t516 * t526;
-        let t572 = t480 * t563 + t521 * t526;
-        let t573 = t512 * minus_rate_dot_left_bar_along_y;
-        let t574 = t516 * minus_rate_dot_left_bar_along_y;
-        let t575 = t521 * minus_rate_dot_left_bar_along_y;
-        let t576 = c_left_bar_along_y * t484;
-        let t578 = minus_s_left_bar_along_y * t494;
-        let t580 = t461 * t576 + t512 * t578;
-        let t590 = minus_s_foot_along_y * t528 - (t21 * (t534 + t547) + t29 * t545)
-            + t473 * t576 + t516 * t578;
-        let t593 = t480 * t576 + t521 * t578;
-        let t594 = c_left_bar_along_y * t494;
-        let t596 = minus_s_left_bar_along_y * t484;
-        let t598 = t512 * t594 - t461 * t596;
-        let t609 = t21 * (minus_rate_dot_left_bar_along_y - t513) - t29 * (t533 + t547)
-            - minus_s_foot_along_y * t524 + t473 * t596 - t516 * t594;
-        let t612 = t521 * t594 - t480 * t596;
-        let t617 = t484 + 0.31 * t528 - 0.31 * t526;
-        let t633 = 9.81 + actuator_accelerations[2];
-        let t637 = minus_gfoot_vy_along_z * t75 - minus_gfoot_vx_along_z * t458;
-        let t640 = t259 - t229;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t442 + t224)
-            + minus_gfoot_vy_along_z * t640;
-        let t643 = t637 * minus_rate_dot_foot_along_z;
-        let t646 = minus_gfoot_vx_along_z * t470 - minus_gfoot_vy_along_z * t272;
-        let t647 = t646 * minus_rate_dot_foot_along_z;
-        let t650 = minus_gfoot_vy_along_z * t278 - minus_gfoot_vx_along_z * t477;
-        let t651 = t650 * minus_rate_dot_foot_along_z;
-        let t652 = minus_s_foot_along_z * t633;
-        let t658 = c_foot_along_z * t215
+        let t445 = t411 * t444;
+        let t450 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t139 - t423 * t444;
+        let t451 = t430 * t444;
+        let t452 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t453 = minus_rate_left_bar_along_y * t452;
+        let t454 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t456 = t453 + t454 + t453;
+        let t457 = minus_s_left_bar_along_y * t456;
+        let t459 = minus_gleft_bar_vx_along_y * t408;
+        let t460 = 3.225806451612903 * t145;
+        let t461 = t460 * t452;
+        let t463 = t411 * t457 - t459 * t461;
+        let t464 = minus_gleft_bar_vx_along_y * t420;
+        let t467 = t464 * t461 - t423 * t457;
+        let t469 = minus_gleft_bar_vx_along_y * t427;
+        let t471 = t430 * t457 - t469 * t461;
+        let t473 = minus_rate_left_bar_along_y * t460;
+        let t474 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t476 = t473 + t473 - t474;
+        let t478 = c_left_bar_along_y * t456 - minus_s_left_bar_along_y * t476;
+        let t480 = t2 * t139;
+        let t481 = t452 * t452;
+        let t482 = t480 - t481;
+        let t484 = t411 * t478 + t459 * t482;
+        let t487 = t423 * t478 + t464 * t482;
+        let t490 = t430 * t478 + t469 * t482;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t412;
+        let t492 = t461 + minus_rate_dot_left_bar_along_y;
+        let t496 = minus_s_left_bar_along_y * t492 + c_left_bar_along_y * (t141 - t480);
+        let t499 = t411 * t496 + t459 * t454;
+        let t502 = t423 * t496 + t464 * t454;
+        let t505 = t430 * t496 + t469 * t454;
+        let t506 = t417 - t463;
+        let t507 = t424 + t467;
+        let t508 = t431 - t471;
+        let t509 = 3.225806451612903 * t392;
+        let t512 = t411 * t509 + t459 * t474;
+        let t515 = t423 * t509 + t464 * t474;
+        let t518 = t430 * t509 + t469 * t474;
+        let t519 = t459 * minus_rate_dot_left_bar_along_y;
+        let t520 = t464 * minus_rate_dot_left_bar_along_y;
+        let t521 = t469 * minus_rate_dot_left_bar_along_y;
+        let t522 = c_left_bar_along_y * t434;
+        let t524 = minus_s_left_bar_along_y * t444;
+        let t526 = t411 * t522 + t459 * t524;
+        let t530 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t537 = minus_s_foot_along_y * t476 - (t20 * (t481 + t141) + t530 * t492)
+            + t423 * t522 + t464 * t524;
+        let t540 = t430 * t522 + t469 * t524;
+        let t541 = c_left_bar_along_y * t444;
+        let t543 = minus_s_left_bar_along_y * t434;
+        let t545 = t459 * t541 - t411 * t543;
+        let t556 = t20 * (minus_rate_dot_left_bar_along_y - t461) - t530 * (t480 + t141)
+            - minus_s_foot_along_y * t456 + t423 * t543 - t464 * t541;
+        let t559 = t469 * t541 - t430 * t543;
+        let t560 = minus_rate_foot_along_y * t145;
+        let t565 = t434 + 0.31 * t476 - 0.31 * t474;
+        let t581 = 9.81 + actuator_accelerations[2];
+        let t585 = minus_gfoot_vy_along_z * t49 - minus_gfoot_vx_along_z * t408;
+        let t588 = t206 + t177;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t392 + t175)
+            + minus_gfoot_vy_along_z * t588;
+        let t591 = t585 * minus_rate_dot_foot_along_z;
+        let t594 = minus_gfoot_vx_along_z * t420 - minus_gfoot_vy_along_z * t225;
+        let t595 = t594 * minus_rate_dot_foot_along_z;
+        let t598 = minus_gfoot_vy_along_z * t231 - minus_gfoot_vx_along_z * t427;
+        let t599 = t598 * minus_rate_dot_foot_along_z;
+        let t600 = minus_s_foot_along_z * t581;
+        let t606 = c_foot_along_z * t166
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t660 = c_foot_along_z * t633;
-        let t661 = t637 * t660;
-        let t662 = t646 * t660;
-        let t667 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t215 - t650 * t660;
-        let t668 = minus_gleft_bar_vy_along_z * t75;
-        let t669 = 3.225806451612903 * t226;
-        let t670 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t671 = t669 * t670;
-        let t673 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t674 = minus_rate_left_bar_along_z * t670;
-        let t675 = t673 + t674;
-        let t677 = minus_rate_left_bar_along_z * t669;
-        let t679 = minus_s_left_bar_along_z * t675 + c_left_bar_along_z * t677;
-        let t681 = t668 * t671 - t637 * t679;
-        let t683 = minus_gleft_bar_vy_along_z * t272;
-        let t685 = t646 * t679 + t683 * t671;
-        let t686 = minus_gleft_bar_vy_along_z * t278;
-        let t689 = t686 * t671 - t650 * t679;
-        let t690 = t674 + t675;
-        let t692 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t694 = t677 + t677 - t692;
-        let t696 = c_left_bar_along_z * t690 - minus_s_left_bar_along_z * t694;
-        let t699 = 10.40582726326743 * (t226 * t226);
-        let t700 = t670 * t670;
-        let t701 = t699 - t700;
-        let t703 = t637 * t696 + t668 * t701;
-        let t706 = t646 * t696 - t683 * t701;
-        let t709 = t650 * t696 + t686 * t701;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t640;
-        let t711 = t671 + minus_rate_dot_left_bar_along_z;
-        let t713 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t716 = minus_s_left_bar_along_z * t711 + c_left_bar_along_z * (t713 - t699);
-        let t719 = t637 * t716 + t668 * t673;
-        let t722 = t646 * t716 - t683 * t673;
-        let t725 = t650 * t716 + t686 * t673;
-        let t726 = t643 + t681;
-        let t727 = t685 - t647;
-        let t728 = t651 + t689;
-        let t729 = 3.225806451612903 * t259;
-        let t732 = t637 * t729 + t668 * t692;
-        let t735 = t683 * t692 - t646 * t729;
-        let t738 = t650 * t729 + t686 * t692;
-        let t739 = t668 * minus_rate_dot_left_bar_along_z;
-        let t740 = t683 * minus_rate_dot_left_bar_along_z;
-        let t741 = t686 * minus_rate_dot_left_bar_along_z;
-        let t742 = c_left_bar_along_z * t652;
-        let t744 = minus_s_left_bar_along_z * t660;
-        let t746 = t637 * t742 + t668 * t744;
-        let t749 = t646 * t742 - t683 * t744;
-        let t759 = minus_s_foot_along_z * t694 - (t42 * (t700 + t713) + t53 * t711)
-            + t650 * t742 + t686 * t744;
-        let t760 = minus_s_left_bar_along_z * t652;
-        let t762 = c_left_bar_along_z * t660;
-        let t764 = t637 * t760 - t668 * t762;
-        let t767 = t646 * t760 + t683 * t762;
-        let t778 = t42 * (minus_rate_dot_left_bar_along_z - t671) - t53 * (t699 + t713)
-            - minus_s_foot_along_z * t690 + t650 * t760 - t686 * t762;
-        let t782 = t652 + 0.31 * t694 - 0.31 * t692;
+        let t608 = c_foot_along_z * t581;
+        let t609 = t585 * t608;
+        let t610 = t594 * t608;
+        let t615 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t166 - t598 * t608;
+        let t616 = minus_gleft_bar_vy_along_z * t49;
+        let t617 = 3.225806451612903 * t172;
+        let t618 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t619 = t617 * t618;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t622 = minus_rate_left_bar_along_z * t618;
+        let t623 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t625 = t622 + t623 + t622;
+        let t626 = minus_s_left_bar_along_z * t625;
+        let t628 = t616 * t619 - t585 * t626;
+        let t630 = minus_gleft_bar_vy_along_z * t225;
+        let t632 = t594 * t626 + t630 * t619;
+        let t633 = minus_gleft_bar_vy_along_z * t231;
+        let t636 = t633 * t619 - t598 * t626;
+        let t638 = minus_rate_left_bar_along_z * t617;
+        let t639 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t641 = t638 + t638 - t639;
+        let t643 = c_left_bar_along_z * t625 - minus_s_left_bar_along_z * t641;
+        let t645 = t24 * t166;
+        let t646 = t618 * t618;
+        let t647 = t645 - t646;
+        let t649 = t585 * t643 + t616 * t647;
+        let t652 = t594 * t643 - t630 * t647;
+        let t655 = t598 * t643 + t633 * t647;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t588;
+        let t657 = t619 + minus_rate_dot_left_bar_along_z;
+        let t661 = minus_s_left_bar_along_z * t657 + c_left_bar_along_z * (t168 - t645);
+        let t664 = t585 * t661 + t616 * t623;
+        let t667 = t594 * t661 - t630 * t623;
+        let t670 = t598 * t661 + t633 * t623;
+        let t671 = t591 + t628;
+        let t672 = t632 - t595;
+        let t673 = t599 + t636;
+        let t674 = 3.225806451612903 * t206;
+        let t677 = t585 * t674 + t616 * t639;
+        let t680 = t630 * t639 - t594 * t674;
+        let t683 = t598 * t674 + t633 * t639;
+        let t684 = t616 * minus_rate_dot_left_bar_along_z;
+        let t685 = t630 * minus_rate_dot_left_bar_along_z;
+        let t686 = t633 * minus_rate_dot_left_bar_along_z;
+        let t687 = c_left_bar_along_z * t600;
+        let t689 = minus_s_left_bar_along_z * t608;
+        let t691 = t585 * t687 + t616 * t689;
+        let t694 = t594 * t687 - t630 * t689;
+        let t698 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t705 = minus_s_foot_along_z * t641 - (t32 * (t646 + t168) + t698 * t657)
+            + t598 * t687 + t633 * t689;
+        let t706 = minus_s_left_bar_along_z * t600;
+        let t708 = c_left_bar_along_z * t608;
+        let t710 = t585 * t706 - t616 * t708;
+        let t713 = t594 * t706 + t630 * t708;
+        let t724 = t32 * (minus_rate_dot_left_bar_along_z - t619) - t698 * (t645 + t168)
+            - minus_s_foot_along_z * t625 + t598 * t706 - t633 * t708;
+        let t728 = t600 + 0.31 * t641 - 0.31 * t639;
+        let t730 = minus_rate_foot_along_z * t172;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, -t265, t79 * t286 - t290, t299,
-                actuator_accelerations[0], -t315, t337, t352, t359, t365, t372, t390, t411, -t299,
-                actuator_accelerations[0], -t315, t337, t352, t359, t365, t372, t390, t411, -t299,
-                actuator_accelerations[0], -t265, t79 * t421 - t290 + t312 * t163,
-                -(t299 + 0.31 * t352), t450, 0.0, 0.0, 0.0, 0.0, 0.0, t467, -(t461 * t484), t495,
-                0.0, t515, -t537, -t553, t560, t566, t573, -t580, t598, -t495, 0.0, t515, -t537,
-                -t553, t560, t566, t573, -t580, t598, -t495, 0.0, t467, t512 * t194 - t461 * t617,
-                -(t495 - 0.31 * t553), t450, 0.0, 0.0, 0.0, 0.0, 0.0, -t643, t637 * t652, -t661,
-                0.0, t681, t703, t719, -t726, -t732, -t739, t746, t764, t661, 0.0, t681, t703, t719,
-                -t726, -t732, -t739, t746, t764, t661, 0.0, -t643, t637 * t782 - t668 * t227,
-                -(0.31 * t719 - t661), t450, t450,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -t218, t56 * t239 - t243, t252,
+                actuator_accelerations[0], -t267, t290, t304, t311, t317, t324, t340, t360, -t252,
+                actuator_accelerations[0], -t267, t290, t304, t311, t317, t324, t340, t360, -t252,
+                actuator_accelerations[0], -t218, t56 * t370 - t243 + t263 * t373,
+                -(t252 + 0.31 * t304), t400, 0.0, 0.0, 0.0, 0.0, 0.0, t417, -(t411 * t434), t445,
+                0.0, t463, -t484, -t499, t506, t512, t519, -t526, t545, -t445, 0.0, t463, -t484,
+                -t499, t506, t512, t519, -t526, t545, -t445, 0.0, t417, t459 * t560 - t411 * t565,
+                -(t445 - 0.31 * t499), t400, 0.0, 0.0, 0.0, 0.0, 0.0, -t591, t585 * t600, -t609,
+                0.0, t628, t649, t664, -t671, -t677, -t684, t691, t710, t609, 0.0, t628, t649, t664,
+                -t671, -t677, -t684, t691, t710, t609, 0.0, -t591, t585 * t728 - t616 * t730,
+                -(0.31 * t664 - t609), t400, t400,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t275, t274 * t286, -t300, 0.0, t319, t340, t355, -t360,
-                -t368, -t373, t393, t414, t300, 0.0, t319, t340, t355, -t360, -t368, -t373, t393,
-                t414, t300, 0.0, -t275, t274 * t421 - t316 * t163, -(0.31 * t355 - t300), t453,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t228, t227 * t239, -t253, 0.0, t271, t293, t307, -t312,
+                -t320, -t325, t343, t363, t253, 0.0, t271, t293, t307, -t312, -t320, -t325, t343,
+                t363, t253, 0.0, -t228, t227 * t370 - t268 * t373, -(0.31 * t307 - t253), t403,
                 actuator_accelerations[1], actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t474, t473 * t484 - t489, t500,
-                actuator_accelerations[1], t519, t540, t556, -t561, -t569, -t574, t590, t609, -t500,
-                actuator_accelerations[1], t519, t540, t556, -t561, -t569, -t574, t590, t609, -t500,
-                actuator_accelerations[1], -t474, t473 * t617 - t489 - t516 * t194,
-                -(t500 + 0.31 * t556), t453, 0.0, 0.0, 0.0, 0.0, 0.0, -t647, t646 * t652, -t662,
-                0.0, -t685, t706, t722, t727, t735, t740, t749, t767, t662, 0.0, -t685, t706, t722,
-                t727, t735, t740, t749, t767, t662, 0.0, -t647, t646 * t782 + t683 * t227,
-                -(0.31 * t722 - t662), t453, t453,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t424, t423 * t434 - t439, t450,
+                actuator_accelerations[1], t467, t487, t502, -t507, -t515, -t520, t537, t556, -t450,
+                actuator_accelerations[1], t467, t487, t502, -t507, -t515, -t520, t537, t556, -t450,
+                actuator_accelerations[1], -t424, t423 * t565 - t439 - t464 * t560,
+                -(t450 + 0.31 * t502), t403, 0.0, 0.0, 0.0, 0.0, 0.0, -t595, t594 * t600, -t610,
+                0.0, -t632, t652, t667, t672, t680, t685, t694, t713, t610, 0.0, -t632, t652, t667,
+                t672, t680, t685, t694, t713, t610, 0.0, -t595, t594 * t728 + t630 * t730,
+                -(0.31 * t667 - t610), t403, t403,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t285, t284 * t286, -t301, 0.0, -t323, t343, t358, t361,
-                t371, t374, t396, t417, t301, 0.0, -t323, t343, t358, t361, t371, t374, t396, t417,
-                t301, 0.0, -t285, t284 * t421 + t321 * t163, -(0.31 * t358 - t301), t456, 0.0, 0.0,
-                0.0, 0.0, 0.0, t481, -(t480 * t484), t501, 0.0, t523, -t543, -t559, t562, t572,
-                t575, -t593, t612, -t501, 0.0, t523, -t543, -t559, t562, t572, t575, -t593, t612,
-                -t501, 0.0, t481, t521 * t194 - t480 * t617, -(t501 - 0.31 * t559), t456, t633,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t238, t237 * t239, -t254, 0.0, -t275, t296, t310, t313,
+                t323, t326, t346, t366, t254, 0.0, -t275, t296, t310, t313, t323, t326, t346, t366,
+                t254, 0.0, -t238, t237 * t370 + t273 * t373, -(0.31 * t310 - t254), t406, 0.0, 0.0,
+                0.0, 0.0, 0.0, t431, -(t430 * t434), t451, 0.0, t471, -t490, -t505, t508, t518,
+                t521, -t540, t559, -t451, 0.0, t471, -t490, -t505, t508, t518, t521, -t540, t559,
+                -t451, 0.0, t431, t469 * t560 - t430 * t565, -(t451 - 0.31 * t505), t406, t581,
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, -t651, t650 * t652 - t658, t667,
-                t633, t689, t709, t725, -t728, -t738, -t741, t759, t778, -t667, t633, t689, t709,
-                t725, -t728, -t738, -t741, t759, t778, -t667, t633, -t651,
-                t650 * t782 - t658 - t686 * t227, -(t667 + 0.31 * t725), t456, t456,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, -t599, t598 * t600 - t606, t615,
+                t581, t636, t655, t670, -t673, -t683, -t686, t705, t724, -t615, t581, t636, t655,
+                t670, -t673, -t683, -t686, t705, t724, -t615, t581, -t599,
+                t598 * t728 - t606 - t633 * t730, -(t615 + 0.31 * t670), t406, t406,
             ],
         ])
     }
@@ -3941,7 +3570,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 500 operations (162 additions, 329 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 414 intermediates.
+    /// 412 operations (134 additions, 272 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 326 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3950,256 +3579,234 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t2, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t8, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t8);
-        let t10 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t10, 1.0, "along_x")?;
-        let t11 = 1.0 / t10;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t11;
-        let t15 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t15);
+        let t3 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        ::overact::guard::reach(t3, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t3);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let t5 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t5;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t9 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t10 = 1.0 - t9;
+        ::overact::guard::reach(t10, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t10);
+        let t12 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t12, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t12;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t16 = pose[2] * minus_gleft_bar_vz_along_x;
+        let t17 = minus_gleft_bar_vz_along_x * t16;
+        let minus_gfoot_vz_along_x = gdrive_vy_along_x * t17;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t15;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t22 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = pose[2] * (minus_rate_foot_along_x * t22);
-        let t27 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t29 = t22 * t22 + t27 * t27;
-        let t30 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t31 = t29 + t30;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t39 = pose[2] * (minus_rate_foot_along_x * t27);
-        let t42 = acceleration[1] + pose[1] * t31 + t39 + t39;
-        let t46 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t46 * t15;
-        let t49 = pose[2] * minus_rate_foot_along_x;
-        let t50 = minus_rate_foot_along_x * t49;
-        let t53 = acceleration[2] - (t50 - pose[2] * t31);
-        let rate_dot_drive_along_x = acceleration[0] - (t24 - 0.31 * t10 * t31 + t24)
-            + gdrive_vy_along_x * t42 + gdrive_vz_along_x * t53;
-        let t56 = c_foot_along_x * rate_dot_drive_along_x;
-        let t60 = 3.225806451612903 * t49;
-        let t61 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t62 = t60 * t61;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t53;
-        let t64 = t62 + minus_rate_dot_left_bar_along_x;
-        let t70 = c_left_bar_along_x * t56 + 31.64516129032258 * pose[2];
-        let t71 = t61 * t61;
-        let t76 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t56 - 9.81 * c_left_bar_along_x - 0.31 * t64)
-            - minus_s_left_bar_along_x * (t70 - 0.31 * (t71 + t29));
-        let t81 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t81, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t81);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t86 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t86, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t86);
-        let t88 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t88, 1.0, "along_y")?;
-        let t89 = 1.0 / t88;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t89;
+        let t22 = minus_rate_left_bar_along_x * (pose[2] * minus_rate_foot_along_x);
+        let t23 = minus_s_foot_along_x * t22;
+        let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t26 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t27 = t25 + t26;
+        let t33 = c_foot_along_x * t22;
+        let t36 = acceleration[1] + pose[1] * t27 + t33 + t33;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t41 = acceleration[2] + pose[2] * t25;
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t12 * t27 + t23)
+            + gdrive_vy_along_x * t36 + gdrive_vz_along_x * t41;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t93 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t93);
-        let t97 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t97 * t93;
+        let t48 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t48, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t48);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let t50 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t50;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t54 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t54, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t54);
+        let t56 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t56, 1.0, "along_y")?;
+        let t57 = 1.0 / t56;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t57;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t61 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t63 = acceleration[0] + pose[0] * t61;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t66 = gdrive_vx_along_y * twist[0];
+        let t67 = pose[0] * minus_gleft_bar_vx_along_y;
+        let t68 = minus_s_foot_along_y * t67;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t68;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t103 = pose[0] * minus_rate_foot_along_y;
-        let t104 = minus_rate_foot_along_y * t103;
-        let t105 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t93;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t108 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t111 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t113 = t105 + t108 * t108 + t111 * t111;
-        let t116 = acceleration[0] - (t104 - pose[0] * t113);
-        let t119 = pose[0] * (minus_rate_foot_along_y * t108);
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t129 = pose[0] * (minus_rate_foot_along_y * t111);
-        let t132 = acceleration[2] + pose[2] * t113 + t129 + t129;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t116 + acceleration[1]
-            - (t119 - 0.31 * t88 * t113 + t119) + gdrive_vz_along_y * t132;
-        let t139 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t139, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t139);
+        let t74 = t66 * (t54 * minus_rate_foot_along_y);
+        let t75 = gdrive_vz_along_y * t74;
+        let t77 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t78 = t77 + t61;
+        let t87 = acceleration[2] + pose[2] * t78 + t74 + t74;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t63 + acceleration[1]
+            - (t75 - 0.31 * t56 * t78 + t75) + gdrive_vz_along_y * t87;
+        let t91 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t93 = 1.0 - t3 * t9;
+        ::overact::guard::reach(t93, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t93);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t144 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t144, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t144);
-        let t146 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t146, 1.0, "along_z")?;
-        let t147 = 1.0 / t146;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t147;
+        let t95 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t95;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t99 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t99, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t99);
+        let t101 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t101, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t101;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t150 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t150;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t153 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t150);
+        let t105 = pose[1] * minus_gleft_bar_vy_along_z;
+        let t106 = minus_gleft_bar_vy_along_z * t105;
+        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t106;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t162 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t164 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t166 = t153 * t153 + t162 + t164 * t164;
-        let t169 = pose[1] * (minus_rate_foot_along_z * t153);
-        let t172 = acceleration[0] + pose[0] * t166 + t169 + t169;
-        let t175 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t175 * t150;
-        let t178 = pose[1] * minus_rate_foot_along_z;
-        let t179 = minus_rate_foot_along_z * t178;
-        let t182 = acceleration[1] - (t179 - pose[1] * t166);
-        let t186 = pose[1] * (minus_rate_foot_along_z * t164);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t172 + gdrive_vy_along_z * t182
-            + acceleration[2] - (t186 - 0.31 * t146 * t166 + t186);
-        let t193 = 9.81 + rate_dot_drive_along_z;
+        let t110 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t112 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t113 = t110 + t112;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t116 = gdrive_vy_along_z * twist[1];
+        let t118 = t116 * (t99 * minus_rate_foot_along_z);
+        let t121 = acceleration[0] + pose[0] * t113 + t118 + t118;
+        let t124 = acceleration[1] + pose[1] * t112;
+        let t127 = gdrive_vx_along_z * t118;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t121 + gdrive_vy_along_z * t124
+            + acceleration[2] - (t127 - 0.31 * t101 * t113 + t127);
+        let t134 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
-        let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
-            + gdrive_vz_along_y * twist[2];
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
-            + gdrive_vy_along_z * twist[1] + twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t42
-            + minus_gfoot_vz_along_x * t53;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t116
-            + minus_gfoot_vz_along_y * t132;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t172
-            + minus_gfoot_vy_along_z * t182;
-        let t242 = c_foot_along_x * t30
+        let rate_drive_along_y = t66 + twist[1] + gdrive_vz_along_y * twist[2];
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t116 + twist[2];
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t36
+            + minus_gfoot_vz_along_x * t41;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t63
+            + minus_gfoot_vz_along_y * t87;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t121
+            + minus_gfoot_vy_along_z * t124;
+        let t181 = c_foot_along_x * t26
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t243 = gdrive_vy_along_x * t242;
-        let t244 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t247 = gdrive_vz_along_x * t242;
-        let t252 = c_foot_along_y * t105
+        let t182 = c_foot_along_x * rate_dot_drive_along_x;
+        let t183 = minus_gfoot_vy_along_x * t182;
+        let t187 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t192 = c_foot_along_y * t77
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t253 = gdrive_vx_along_y * t252;
-        let t256 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t259 = gdrive_vz_along_y * t252;
-        let t264 = c_foot_along_z * t162
+        let t195 = c_foot_along_y * (9.81 - t91);
+        let t203 = c_foot_along_z * t110
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t265 = gdrive_vx_along_z * t264;
-        let t266 = minus_s_foot_along_z * t193;
-        let t269 = gdrive_vy_along_z * t264;
-        let t274 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t30;
-        let t283 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t105;
-        let t287 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t295 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t162;
-        let t297 = c_foot_along_z * t193;
-        let t303 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t304 = minus_rate_left_bar_along_x * t61;
-        let t305 = t303 + t304;
-        let t307 = minus_rate_left_bar_along_x * t60;
-        let t309 = minus_s_left_bar_along_x * t305 + c_left_bar_along_x * t307;
-        let t314 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t315 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t316 = minus_rate_left_bar_along_y * t315;
-        let t317 = t314 + t316;
-        let t319 = 3.225806451612903 * t103;
-        let t320 = minus_rate_left_bar_along_y * t319;
-        let t322 = minus_s_left_bar_along_y * t317 + c_left_bar_along_y * t320;
-        let t327 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t328 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t329 = minus_rate_left_bar_along_z * t328;
-        let t330 = t327 + t329;
-        let t332 = 3.225806451612903 * t178;
-        let t333 = minus_rate_left_bar_along_z * t332;
-        let t335 = minus_s_left_bar_along_z * t330 + c_left_bar_along_z * t333;
-        let t340 = t304 + t305;
-        let t342 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t344 = t307 + t307 - t342;
-        let t346 = c_left_bar_along_x * t340 - minus_s_left_bar_along_x * t344;
-        let t350 = 10.40582726326743 * (t49 * t49);
-        let t354 = t316 + t317;
-        let t356 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t358 = t320 + t320 - t356;
-        let t360 = c_left_bar_along_y * t354 - minus_s_left_bar_along_y * t358;
-        let t363 = 10.40582726326743 * (t103 * t103);
-        let t369 = t329 + t330;
-        let t371 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t373 = t333 + t333 - t371;
-        let t375 = c_left_bar_along_z * t369 - minus_s_left_bar_along_z * t373;
-        let t379 = 10.40582726326743 * (t178 * t178);
-        let t387 = minus_s_left_bar_along_x * t64 + c_left_bar_along_x * (t29 - t350);
-        let t392 = t319 * t315;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t116;
-        let t396 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t399 = minus_s_left_bar_along_y * (t392 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t396 - t363);
-        let t404 = t332 * t328;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t182;
-        let t408 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t411 = minus_s_left_bar_along_z * (t404 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t408 - t379);
-        let t443 = t10 * (minus_rate_dot_left_bar_along_x - t62) - t46 * (t350 + t29)
-            - minus_s_foot_along_x * t340;
-        let t445 = minus_s_left_bar_along_x * t244;
-        let t459 = t88 * (minus_rate_dot_left_bar_along_y - t392) - t97 * (t363 + t396)
-            - minus_s_foot_along_y * t354;
-        let t461 = minus_s_left_bar_along_y * t256;
-        let t475 = t146 * (minus_rate_dot_left_bar_along_z - t404) - t175 * (t379 + t408)
-            - minus_s_foot_along_z * t369;
-        let t477 = minus_s_left_bar_along_z * t266;
-        let t488 = t244 + 0.31 * t344 - 0.31 * t342;
-        let t499 = t256 + 0.31 * t358 - 0.31 * t356;
-        let t508 = t266 + 0.31 * t373 - 0.31 * t371;
+        let t204 = c_foot_along_z * t134;
+        let t205 = minus_gfoot_vx_along_z * t204;
+        let t209 = minus_s_foot_along_z * t134;
+        let t214 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t26;
+        let t222 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t77;
+        let t226 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t234 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t110;
+        let t240 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t241 = minus_rate_left_bar_along_x * t240;
+        let t242 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t244 = t241 + t242 + t241;
+        let t245 = minus_s_left_bar_along_x * t244;
+        let t248 = t240 * t240;
+        let t249 = t248 * t17;
+        let t251 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t252 = minus_rate_left_bar_along_y * t251;
+        let t253 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t255 = t252 + t253 + t252;
+        let t256 = minus_s_left_bar_along_y * t255;
+        let t258 = t251 * t251;
+        let t259 = t258 * t67;
+        let t260 = minus_gleft_bar_vx_along_y * t259;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t264 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t265 = minus_rate_left_bar_along_z * t264;
+        let t266 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t268 = t265 + t266 + t265;
+        let t269 = minus_s_left_bar_along_z * t268;
+        let t272 = t264 * t264;
+        let t273 = t272 * t106;
+        let t277 = t5 * (minus_rate_dot_foot_along_x - t245);
+        let t279 = c_left_bar_along_x * t244 + minus_s_left_bar_along_x * t277;
+        let t282 = pose[2] * t249;
+        let t288 = t50 * (minus_rate_dot_foot_along_y - t256);
+        let t290 = c_left_bar_along_y * t255 + minus_s_left_bar_along_y * t288;
+        let t292 = pose[0] * t260;
+        let t299 = t95 * (minus_rate_dot_foot_along_z - t269);
+        let t301 = c_left_bar_along_z * t268 + minus_s_left_bar_along_z * t299;
+        let t304 = pose[1] * t273;
+        let t308 = t248 * t16;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t41;
+        let t314 = minus_s_left_bar_along_x * (t308 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t25 - t282);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t63;
+        let t324 = minus_s_left_bar_along_y * (t259 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t61 - t292);
+        let t329 = t272 * t105;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t124;
+        let t335 = minus_s_left_bar_along_z * (t329 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t112 - t304);
+        let t340 = 3.225806451612903 * acceleration[2];
+        let t346 = 10.40582726326743 * (t57 * acceleration[0]);
+        let t350 = 3.225806451612903 * acceleration[1];
+        let t365 = t12 * (minus_rate_dot_left_bar_along_x - t308)
+            - minus_s_left_bar_along_x * c_foot_along_x * (t282 + t25)
+            - minus_s_foot_along_x * t244;
+        let t367 = minus_s_left_bar_along_x * t187;
+        let t385 = t56 * (minus_rate_dot_left_bar_along_y - t259)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t292 + t61)
+            - minus_s_foot_along_y * t255;
+        let t387 = minus_s_left_bar_along_y * t195;
+        let t402 = t101 * (minus_rate_dot_left_bar_along_z - t329)
+            - minus_s_left_bar_along_z * c_foot_along_z * (t304 + t112)
+            - minus_s_foot_along_z * t268;
+        let t404 = minus_s_left_bar_along_z * t209;
+        let t413 = t187 - 0.31 * t277;
+        let t418 = t195 + 0.31 * t288;
+        let t423 = t209 - 0.31 * t299;
         Ok([
             [
                 acceleration[0], rate_dot_drive_along_x, gdrive_vx_along_y * rate_dot_drive_along_y,
-                gdrive_vx_along_z * t193, gdrive_vx_along_z * rate_dot_drive_along_z,
+                gdrive_vx_along_z * t134, gdrive_vx_along_z * rate_dot_drive_along_z,
                 rate_drive_along_x, gdrive_vx_along_y * rate_drive_along_y,
                 gdrive_vx_along_z * rate_drive_along_z, ::overact::math::sign(rate_drive_along_x),
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y),
                 ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), 1.0,
                 gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t242,
-                -(t253 + minus_gfoot_vx_along_y * t256), -(t265 + minus_gfoot_vx_along_z * t266),
-                t274, gdrive_vx_along_y * t283 + minus_gfoot_vx_along_y * t287,
-                gdrive_vx_along_z * t295 + minus_gfoot_vx_along_z * t297, 0.0,
-                minus_gfoot_vx_along_y * t322 - 10.40582726326743 * t104,
-                minus_gfoot_vx_along_z * t335, 0.0,
-                -(minus_gfoot_vx_along_y * t360
-                    + minus_gleft_bar_vx_along_y * (t363 - t315 * t315)),
-                -(minus_gfoot_vx_along_z * t375),
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t181,
+                -(gdrive_vx_along_y * t192 - minus_gfoot_vx_along_y * t195),
+                -(gdrive_vx_along_z * (t203 + t205)), t214,
+                gdrive_vx_along_y * t222 + minus_gfoot_vx_along_y * t226,
+                gdrive_vx_along_z * t234 + t205, 0.0, minus_gfoot_vx_along_y * t256 - t260,
+                minus_gfoot_vx_along_z * t269, 0.0,
+                -(minus_gfoot_vx_along_y * t290
+                    + minus_gleft_bar_vx_along_y * (t292 - t258)),
+                -(minus_gfoot_vx_along_z * t301),
                 0.0,
-                -(minus_gfoot_vx_along_y * t399 + minus_gleft_bar_vx_along_y * t314),
-                -(minus_gfoot_vx_along_z * t411),
+                -(minus_gfoot_vx_along_y * t324 + minus_gleft_bar_vx_along_y * t253),
+                -(minus_gfoot_vx_along_z * t335),
                 0.0,
-                minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
-                    + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                10.40582726326743 * (t147 * acceleration[1]),
+                t68 * t346 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t350,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t443,
-                gdrive_vx_along_y * t459 - minus_gfoot_vx_along_y * t461
-                    + 3.225806451612903 * t287,
-                gdrive_vx_along_z * t475 - minus_gfoot_vx_along_z * t477,
-                -t242,
-                minus_gleft_bar_vx_along_y * t104
-                    - (t253 + minus_gfoot_vx_along_y * t499),
-                -(t265 + minus_gfoot_vx_along_z * t508),
+                t365,
+                gdrive_vx_along_y * t385 + minus_gfoot_vx_along_y * t387
+                    + 3.225806451612903 * t226,
+                gdrive_vx_along_z * t402 - minus_gfoot_vx_along_z * t404,
+                -t181,
+                minus_gfoot_vx_along_y * t418,
+                -(minus_gfoot_vx_along_z * t423 - t234),
             ],
             [
                 acceleration[1], gdrive_vy_along_x * rate_dot_drive_along_x, rate_dot_drive_along_y,
-                gdrive_vy_along_z * t193, gdrive_vy_along_z * rate_dot_drive_along_z,
+                gdrive_vy_along_z * t134, gdrive_vy_along_z * rate_dot_drive_along_z,
                 gdrive_vy_along_x * rate_drive_along_x, rate_drive_along_y,
                 gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x),
@@ -4207,70 +3814,68 @@ impl Orthoglide {
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_x,
                 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
                 minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                -(t243 + minus_gfoot_vy_along_x * t244), -t252,
-                -(t269 + minus_gfoot_vy_along_z * t266),
-                gdrive_vy_along_x * t274 + minus_gfoot_vy_along_x * t56, t283,
-                gdrive_vy_along_z * t295 + minus_gfoot_vy_along_z * t297,
-                minus_gfoot_vy_along_x * t309, 0.0,
-                minus_gfoot_vy_along_z * t335 - 10.40582726326743 * t179,
-                -(minus_gfoot_vy_along_x * t346), 0.0,
-                -(minus_gfoot_vy_along_z * t375
-                    + minus_gleft_bar_vy_along_z * (t379 - t328 * t328)),
-                -(minus_gfoot_vy_along_x * t387),
+                -(gdrive_vy_along_x * (t181 + t183)), -t192,
+                -(gdrive_vy_along_z * t203 + minus_gfoot_vy_along_z * t209),
+                gdrive_vy_along_x * t214 + t183, t222,
+                gdrive_vy_along_z * t234 + minus_gfoot_vy_along_z * t204,
+                minus_gfoot_vy_along_x * t245, 0.0, minus_gfoot_vy_along_z * t269 - t273,
+                -(minus_gfoot_vy_along_x * t279), 0.0,
+                -(minus_gfoot_vy_along_z * t301
+                    + minus_gleft_bar_vy_along_z * (t304 - t272)),
+                -(minus_gfoot_vy_along_x * t314),
                 0.0,
-                -(minus_gfoot_vy_along_z * t411 + minus_gleft_bar_vy_along_z * t327),
-                10.40582726326743 * (t11 * acceleration[2]),
+                -(minus_gfoot_vy_along_z * t335 + minus_gleft_bar_vy_along_z * t266),
+                minus_gfoot_vy_along_x * t340,
                 0.0,
-                minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+                minus_gfoot_vy_along_z * t350
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                gdrive_vy_along_x * t443 - minus_gfoot_vy_along_x * t445,
-                t459,
-                gdrive_vy_along_z * t475 - minus_gfoot_vy_along_z * t477
-                    + 3.225806451612903 * t297,
-                -(t243 + minus_gfoot_vy_along_x * t488),
-                -t252,
-                minus_gleft_bar_vy_along_z * t179
-                    - (t269 + minus_gfoot_vy_along_z * t508),
+                gdrive_vy_along_x * t365 - minus_gfoot_vy_along_x * t367,
+                t385,
+                gdrive_vy_along_z * t402 - minus_gfoot_vy_along_z * t404
+                    + 3.225806451612903 * t204,
+                -(minus_gfoot_vy_along_x * t413 - t214),
+                -t192,
+                -(minus_gfoot_vy_along_z * t423),
             ],
             [
-                -t76, gdrive_vz_along_x * rate_dot_drive_along_x,
-                gdrive_vz_along_y * rate_dot_drive_along_y, t193, rate_dot_drive_along_z,
-                gdrive_vz_along_x * rate_drive_along_x, gdrive_vz_along_y * rate_drive_along_y,
-                rate_drive_along_z, ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
+                -(-9.81 - acceleration[2]), gdrive_vz_along_x * rate_dot_drive_along_x, t91, t134,
+                rate_dot_drive_along_z, gdrive_vz_along_x * rate_drive_along_x,
+                gdrive_vz_along_y * rate_drive_along_y, rate_drive_along_z,
+                ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y),
                 ::overact::math::sign(rate_drive_along_z), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                -(t247 + minus_gfoot_vz_along_x * t244), -(t259 + minus_gfoot_vz_along_y * t256),
-                -t264, gdrive_vz_along_x * t274 + minus_gfoot_vz_along_x * t56,
-                gdrive_vz_along_y * t283 + minus_gfoot_vz_along_y * t287, t295,
-                minus_gfoot_vz_along_x * t309 - 10.40582726326743 * t50,
-                minus_gfoot_vz_along_y * t322, 0.0,
-                -(minus_gfoot_vz_along_x * t346
-                    + minus_gleft_bar_vz_along_x * (t350 - t71)),
-                -(minus_gfoot_vz_along_y * t360),
+                -(gdrive_vz_along_x * t181 + minus_gfoot_vz_along_x * t187),
+                -(gdrive_vz_along_y * t192 - minus_gfoot_vz_along_y * t195), -t203,
+                gdrive_vz_along_x * t214 + minus_gfoot_vz_along_x * t182,
+                gdrive_vz_along_y * t222 + minus_gfoot_vz_along_y * t226, t234,
+                minus_gfoot_vz_along_x * t245 - t249, minus_gfoot_vz_along_y * t256, 0.0,
+                -(minus_gfoot_vz_along_x * t279
+                    + minus_gleft_bar_vz_along_x * (t282 - t248)),
+                -(minus_gfoot_vz_along_y * t290),
                 0.0,
-                -(minus_gfoot_vz_along_x * t387 + minus_gleft_bar_vz_along_x * t303),
-                -(minus_gfoot_vz_along_y * t399),
+                -(minus_gfoot_vz_along_x * t314 + minus_gleft_bar_vz_along_x * t242),
+                -(minus_gfoot_vz_along_y * t324),
                 0.0,
-                minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+                minus_gfoot_vz_along_x * t340
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                10.40582726326743 * (t89 * acceleration[0]),
+                t346,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                gdrive_vz_along_x * t443 - minus_gfoot_vz_along_x * t445
-                    + minus_gleft_bar_vz_along_x * t70,
-                gdrive_vz_along_y * t459 - minus_gfoot_vz_along_y * t461,
-                t475,
-                minus_gleft_bar_vz_along_x * t50
-                    - (t247 + minus_gfoot_vz_along_x * t488),
-                -(t259 + minus_gfoot_vz_along_y * t499),
-                -t264,
+                gdrive_vz_along_x * t365 - minus_gfoot_vz_along_x * t367
+                    + minus_gleft_bar_vz_along_x
+                        * (c_left_bar_along_x * t182 + 31.64516129032258 * pose[2]),
+                gdrive_vz_along_y * t385 + minus_gfoot_vz_along_y * t387,
+                t402,
+                -(minus_gfoot_vz_along_x * t413),
+                t222 + minus_gfoot_vz_along_y * t418,
+                -t203,
             ],
         ])
     }
@@ -4285,7 +3890,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 485 operations (156 additions, 323 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 405 intermediates.
+    /// 404 operations (128 additions, 270 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 324 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4295,212 +3900,190 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let [(s_left_bar_along_x, c_left_bar_along_x),
-        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        let [(minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
         (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
         ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t4 = 0.31 * s_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t10 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t10);
+        let t5 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t5;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t8 = 0.31 * s_left_bar_along_x;
+        let t9 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let t10 = 1.0 / t9;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
+        let t13 = minus_c_foot_along_x * c_left_bar_along_x;
+        let minus_gdrive_vy_along_x = t13 * t10;
+        let t15 = s_left_bar_along_x * t5;
+        let t16 = minus_gleft_bar_vz_along_x * t15;
+        let minus_gfoot_vz_along_x = minus_gdrive_vy_along_x * t16;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t17 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t4 * (minus_rate_foot_along_x * t17);
-        let t22 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = t17 * t17 + t22 * t22;
-        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t26 = t24 + t25;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t31 * t6;
-        let t33 = 0.31 * t31;
-        let t36 = t4 * (minus_rate_foot_along_x * t22);
-        let t39 = acceleration[1] - (t33 * t26 + t36 + t36);
-        let t43 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t33 * minus_gfoot_vz_along_x + t43 * t10;
-        let t47 = t4 * minus_rate_foot_along_x;
-        let t48 = minus_rate_foot_along_x * t47;
-        let t50 = acceleration[2] - (t4 * t26 - t48);
-        let rate_dot_drive_along_x = acceleration[0] - (t19 - 0.31 * t5 * t26 + t19)
-            - minus_gdrive_vy_along_x * t39 - minus_gdrive_vz_along_x * t50;
-        let t53 = s_foot_along_x * rate_dot_drive_along_x;
-        let t56 = c_left_bar_along_x * t53 - 9.81 * s_left_bar_along_x;
-        let t57 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t58 = t57 * t57;
-        let t63 = 3.225806451612903 * t47;
-        let t64 = t63 * t57;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t50;
-        let t66 = t64 - minus_rate_dot_left_bar_along_x;
-        let t73 = s_left_bar_along_x * (t56 - 0.31 * (t58 + t24))
-            + c_left_bar_along_x
-                * (0.31 * t66 - (s_left_bar_along_x * t53 + 9.81 * c_left_bar_along_x));
-        let t80 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t81 = 0.31 * t80;
-        let t82 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t82, 1.0, "along_y")?;
-        let t83 = 1.0 / t82;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t83;
-        let t86 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t86);
-        let t90 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t81 * minus_gfoot_vx_along_y + t90 * t86;
-        let t93 = 0.31 * s_left_bar_along_y;
+        let t21 = minus_rate_left_bar_along_x * (t8 * minus_rate_foot_along_x);
+        let t22 = minus_c_foot_along_x * t21;
+        let t23 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t24 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t26 = 0.31 * (t23 + t24);
+        let t32 = s_foot_along_x * t21;
+        let t35 = acceleration[1] - (t13 * t26 + t32 + t32);
+        let minus_gdrive_vz_along_x = s_left_bar_along_x * t10;
+        let t40 = acceleration[2] - t8 * t23;
+        let rate_dot_drive_along_x = acceleration[0] - (t22 - t9 * t26 + t22)
+            - minus_gdrive_vy_along_x * t35 - minus_gdrive_vz_along_x * t40;
+        let t49 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t49, 1.0, "along_y")?;
+        let t50 = 1.0 / t49;
+        let minus_gdrive_vx_along_y = t50 * s_left_bar_along_y;
+        let t52 = s_foot_along_y * s_left_bar_along_y;
+        let t53 = 1.0 / c_left_bar_along_y;
+        let t54 = t52 * t53;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t50;
+        let t57 = t54 * minus_gdrive_vz_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t53;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t50;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t57;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t86;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t99 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t101 = t93 * (minus_rate_foot_along_y * t99);
-        let t103 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t106 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t108 = t103 + t99 * t99 + t106 * t106;
-        let t114 = t93 * minus_rate_foot_along_y;
-        let t115 = minus_rate_foot_along_y * t114;
-        let t117 = acceleration[0] - (t93 * t108 - t115);
-        let minus_gdrive_vz_along_y = t80 * t83;
-        let t123 = t93 * (minus_rate_foot_along_y * t106);
-        let t126 = acceleration[2] - (t81 * t108 + t123 + t123);
-        let rate_dot_drive_along_y = acceleration[1] - (t101 - 0.31 * t82 * t108 + t101)
-            - minus_gdrive_vx_along_y * t117 - minus_gdrive_vz_along_y * t126;
-        let t135 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t136 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t136, 1.0, "along_z")?;
-        let t137 = 1.0 / t136;
-        let minus_gdrive_vx_along_z = t135 * t137;
-        let t139 = 0.31 * s_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t137;
-        let t143 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t143);
+        let t65 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t66 = minus_rate_left_bar_along_y * t65;
+        let t67 = 0.31 * t66;
+        let t68 = t57 * t67;
+        let t70 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t71 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t73 = 0.31 * t49 * (t70 + t71);
+        let t77 = 0.31 * s_left_bar_along_y;
+        let t79 = acceleration[0] - t77 * t71;
+        let t83 = t54 * t67;
+        let t86 = acceleration[2] - (t73 * minus_gdrive_vz_along_y + t83 + t83);
+        let rate_dot_drive_along_y = acceleration[1] - (t68 - t73 + t68)
+            - minus_gdrive_vx_along_y * t79 - minus_gdrive_vz_along_y * t86;
+        let t90 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t95 = minus_c_foot_along_z * c_left_bar_along_z;
+        let t96 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t96, 1.0, "along_z")?;
+        let t97 = 1.0 / t96;
+        let minus_gdrive_vx_along_z = t95 * t97;
+        let t99 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t99;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t103 = 0.31 * s_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t97;
+        let minus_gdrive_vy_along_z = t97 * s_left_bar_along_z;
+        let t107 = s_foot_along_z * minus_gdrive_vy_along_z;
+        let t108 = minus_gleft_bar_vy_along_z * t107;
+        let minus_gfoot_vy_along_z = minus_gdrive_vx_along_z * t108;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t143;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t150 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t152 = t139 * (minus_rate_foot_along_z * t150);
-        let t154 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t156 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t159 = t154 * t154 + t156 + t150 * t150;
-        let t164 = 0.31 * t135;
-        let t167 = t139 * (minus_rate_foot_along_z * t154);
-        let t170 = acceleration[0] - (t164 * t159 + t167 + t167);
-        let t173 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t164 * minus_gfoot_vy_along_z + t173 * t143;
-        let t177 = t139 * minus_rate_foot_along_z;
-        let t178 = minus_rate_foot_along_z * t177;
-        let t180 = acceleration[1] - (t139 * t159 - t178);
-        let rate_dot_drive_along_z = acceleration[2] - (t152 - 0.31 * t136 * t159 + t152)
-            - (minus_gdrive_vx_along_z * t170 + minus_gdrive_vy_along_z * t180);
-        let t184 = 9.81 + rate_dot_drive_along_z;
+        let t113 = s_foot_along_z * minus_rate_left_bar_along_z
+            * (t103 * minus_rate_foot_along_z);
+        let t114 = minus_gdrive_vx_along_z * t113;
+        let t115 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t116 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t118 = 0.31 * (t115 + t116);
+        let t126 = acceleration[0] - (t95 * t118 + t113 + t113);
+        let t129 = acceleration[1] - t103 * t116;
+        let rate_dot_drive_along_z = acceleration[2] - (t114 - t96 * t118 + t114)
+            - (minus_gdrive_vx_along_z * t126 + minus_gdrive_vy_along_z * t129);
+        let t133 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t39
-            + minus_gfoot_vz_along_x * t50;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t117
-            + minus_gfoot_vz_along_y * t126;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t170
-            + minus_gfoot_vy_along_z * t180;
-        let t233 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t25;
-        let t234 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t236 = minus_gdrive_vy_along_x * t233;
-        let t239 = minus_gdrive_vz_along_x * t233;
-        let t243 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t247 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t103;
-        let t248 = minus_gdrive_vx_along_y * t247;
-        let t251 = minus_gdrive_vz_along_y * t247;
-        let t253 = minus_c_foot_along_z * t184;
-        let t257 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t156;
-        let t258 = minus_gdrive_vx_along_z * t257;
-        let t261 = minus_gdrive_vy_along_z * t257;
-        let t265 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t25;
-        let t274 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t278 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t103;
-        let t284 = s_foot_along_z * t184;
-        let t288 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t156;
-        let t294 = minus_rate_left_bar_along_x * t57;
-        let t295 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t296 = t294 - t295;
-        let t298 = minus_rate_left_bar_along_x * t63;
-        let t300 = s_left_bar_along_x * t296 + c_left_bar_along_x * t298;
-        let t306 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t307 = minus_rate_left_bar_along_y * t306;
-        let t308 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t309 = t307 - t308;
-        let t311 = 3.225806451612903 * t114;
-        let t312 = minus_rate_left_bar_along_y * t311;
-        let t314 = s_left_bar_along_y * t309 + c_left_bar_along_y * t312;
-        let t318 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t319 = minus_rate_left_bar_along_z * t318;
-        let t320 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t321 = t319 - t320;
-        let t323 = 3.225806451612903 * t177;
-        let t324 = minus_rate_left_bar_along_z * t323;
-        let t326 = s_left_bar_along_z * t321 + c_left_bar_along_z * t324;
-        let t331 = t294 + t296;
-        let t333 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t335 = t298 + t333 + t298;
-        let t337 = c_left_bar_along_x * t331 - s_left_bar_along_x * t335;
-        let t341 = 10.40582726326743 * (t47 * t47);
-        let t345 = t307 + t309;
-        let t347 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t349 = t312 + t347 + t312;
-        let t351 = c_left_bar_along_y * t345 - s_left_bar_along_y * t349;
-        let t354 = 10.40582726326743 * (t114 * t114);
-        let t360 = t319 + t321;
-        let t362 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t364 = t324 + t362 + t324;
-        let t366 = c_left_bar_along_z * t360 - s_left_bar_along_z * t364;
-        let t370 = 10.40582726326743 * (t177 * t177);
-        let t378 = s_left_bar_along_x * t66 + c_left_bar_along_x * (t24 - t341);
-        let t384 = t311 * t306;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t117;
-        let t388 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t391 = s_left_bar_along_y * (t384 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t388 - t354);
-        let t395 = t323 * t318;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t180;
-        let t399 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t402 = s_left_bar_along_z * (t395 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t399 - t370);
-        let t434 = t5 * (t64 + minus_rate_dot_left_bar_along_x) + t43 * (t341 + t24)
-            + minus_c_foot_along_x * t331;
-        let t436 = s_left_bar_along_x * t234;
-        let t451 = t82 * (t384 + minus_rate_dot_left_bar_along_y) + t90 * (t354 + t388)
-            + minus_c_foot_along_y * t345;
-        let t453 = s_left_bar_along_y * t243;
-        let t466 = t136 * (t395 + minus_rate_dot_left_bar_along_z) + t173 * (t370 + t399)
-            + minus_c_foot_along_z * t360;
-        let t468 = s_left_bar_along_z * t253;
-        let t479 = 0.31 * t333 + t234 + 0.31 * t335;
-        let t489 = 0.31 * t347 + t243 + 0.31 * t349;
-        let t499 = 0.31 * t362 + t253 + 0.31 * t364;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
+            + minus_gfoot_vz_along_x * t40;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t79
+            + minus_gfoot_vz_along_y * t86;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t126
+            + minus_gfoot_vy_along_z * t129;
+        let t182 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t24;
+        let t183 = s_foot_along_x * rate_dot_drive_along_x;
+        let t184 = minus_gfoot_vy_along_x * t183;
+        let t187 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t192 = s_foot_along_y * (9.81 + t90);
+        let t196 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t70;
+        let t204 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t115;
+        let t205 = s_foot_along_z * t133;
+        let t206 = minus_gfoot_vx_along_z * t205;
+        let t209 = minus_c_foot_along_z * t133;
+        let t215 = s_foot_along_x * minus_rate_dot_foot_along_x
+            + minus_c_foot_along_x * t24;
+        let t223 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t227 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t70;
+        let t235 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t115;
+        let t241 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t242 = minus_rate_left_bar_along_x * t241;
+        let t243 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t245 = t242 + t242 - t243;
+        let t246 = s_left_bar_along_x * t245;
+        let t248 = t241 * t241;
+        let t249 = t248 * t16;
+        let t253 = s_left_bar_along_y * minus_rate_foot_along_y * t65;
+        let t254 = minus_gleft_bar_vx_along_y * t253;
+        let t255 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t257 = t66 + t66 - t255;
+        let t258 = s_left_bar_along_y * t257;
+        let t262 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t263 = minus_rate_left_bar_along_z * t262;
+        let t264 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t266 = t263 + t263 - t264;
+        let t267 = s_left_bar_along_z * t266;
+        let t269 = t262 * t262;
+        let t270 = t269 * t108;
+        let t275 = t5 * (minus_rate_dot_foot_along_x + t246);
+        let t277 = c_left_bar_along_x * t245 - s_left_bar_along_x * t275;
+        let t280 = t8 * t249;
+        let t286 = t53 * (minus_rate_dot_foot_along_y + t258);
+        let t288 = c_left_bar_along_y * t257 - s_left_bar_along_y * t286;
+        let t290 = t77 * t254;
+        let t298 = t99 * (minus_rate_dot_foot_along_z + t267);
+        let t300 = c_left_bar_along_z * t266 - s_left_bar_along_z * t298;
+        let t303 = t103 * t270;
+        let t307 = t248 * t15;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
+        let t313 = s_left_bar_along_x * (t307 - minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t23 - t280);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t79;
+        let t324 = s_left_bar_along_y * (t253 - minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t71 - t290);
+        let t328 = t269 * t107;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t129;
+        let t334 = s_left_bar_along_z * (t328 - minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t116 - t303);
+        let t339 = 3.225806451612903 * acceleration[2];
+        let t345 = 10.40582726326743 * (t50 * acceleration[0]);
+        let t349 = 3.225806451612903 * acceleration[1];
+        let t364 = t9 * (t307 + minus_rate_dot_left_bar_along_x)
+            + s_foot_along_x * s_left_bar_along_x * (t280 + t23)
+            + minus_c_foot_along_x * t245;
+        let t366 = s_left_bar_along_x * t187;
+        let t384 = t49 * (t253 + minus_rate_dot_left_bar_along_y) + t52 * (t290 + t71)
+            + minus_c_foot_along_y * t257;
+        let t386 = s_left_bar_along_y * t192;
+        let t400 = t96 * (t328 + minus_rate_dot_left_bar_along_z)
+            + s_foot_along_z * s_left_bar_along_z * (t303 + t116)
+            + minus_c_foot_along_z * t266;
+        let t402 = s_left_bar_along_z * t209;
+        let t411 = t187 + 0.31 * t275;
+        let t416 = t192 + 0.31 * t286;
+        let t421 = t209 + 0.31 * t298;
         Ok([
             [
                 acceleration[0], rate_dot_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_dot_drive_along_y),
-                -(minus_gdrive_vx_along_z * t184),
+                -(minus_gdrive_vx_along_z * t133),
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z), rate_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
@@ -4508,36 +4091,35 @@ impl Orthoglide {
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z), 1.0,
                 -minus_gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, t233,
-                minus_gfoot_vx_along_y * t243 - t248, minus_gfoot_vx_along_z * t253 - t258, t265,
-                minus_gfoot_vx_along_y * t274 - minus_gdrive_vx_along_y * t278,
-                minus_gfoot_vx_along_z * t284 - minus_gdrive_vx_along_z * t288, 0.0,
-                10.40582726326743 * t115 - minus_gfoot_vx_along_y * t314,
-                -(minus_gfoot_vx_along_z * t326), 0.0,
-                -(minus_gfoot_vx_along_y * t351
-                    + minus_gleft_bar_vx_along_y * (t354 - t306 * t306)),
-                -(minus_gfoot_vx_along_z * t366),
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, t182,
+                minus_gfoot_vx_along_y * t192 - minus_gdrive_vx_along_y * t196,
+                -(minus_gdrive_vx_along_z * (t204 - t206)), t215,
+                minus_gfoot_vx_along_y * t223 - minus_gdrive_vx_along_y * t227,
+                t206 - minus_gdrive_vx_along_z * t235, 0.0, t254 - minus_gfoot_vx_along_y * t258,
+                -(minus_gfoot_vx_along_z * t267), 0.0,
+                -(minus_gfoot_vx_along_y * t288
+                    + minus_gleft_bar_vx_along_y * (t290 - t65 * t65)),
+                -(minus_gfoot_vx_along_z * t300),
                 0.0,
-                minus_gleft_bar_vx_along_y * t308 - minus_gfoot_vx_along_y * t391,
-                -(minus_gfoot_vx_along_z * t402),
+                minus_gleft_bar_vx_along_y * t255 - minus_gfoot_vx_along_y * t324,
+                -(minus_gfoot_vx_along_z * t334),
                 0.0,
-                minus_gfoot_vx_along_y * (3.225806451612903 * acceleration[0])
-                    + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                10.40582726326743 * (t137 * acceleration[1]),
+                t57 * t345 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t349,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t434,
-                3.225806451612903 * t274
-                    - (minus_gdrive_vx_along_y * t451 + minus_gfoot_vx_along_y * t453),
-                -(minus_gdrive_vx_along_z * t466 + minus_gfoot_vx_along_z * t468),
-                t233,
-                minus_gfoot_vx_along_y * t489 - t248 - minus_gleft_bar_vx_along_y * t115,
-                minus_gfoot_vx_along_z * t499 - t258,
+                t364,
+                3.225806451612903 * t223
+                    - (minus_gdrive_vx_along_y * t384 + minus_gfoot_vx_along_y * t386),
+                -(minus_gdrive_vx_along_z * t400 + minus_gfoot_vx_along_z * t402),
+                t182,
+                minus_gfoot_vx_along_y * t416,
+                t235 + minus_gfoot_vx_along_z * t421,
             ],
             [
                 acceleration[1], -(minus_gdrive_vy_along_x * rate_dot_drive_along_x),
-                rate_dot_drive_along_y, -(minus_gdrive_vy_along_z * t184),
+                rate_dot_drive_along_y, -(minus_gdrive_vy_along_z * t133),
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_x * rate_drive_along_x), rate_drive_along_y,
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
@@ -4546,68 +4128,68 @@ impl Orthoglide {
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
                 -minus_gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x,
                 0.0, minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                minus_gfoot_vy_along_x * t234 - t236, t247, minus_gfoot_vy_along_z * t253 - t261,
-                minus_gfoot_vy_along_x * t53 - minus_gdrive_vy_along_x * t265, t278,
-                minus_gfoot_vy_along_z * t284 - minus_gdrive_vy_along_z * t288,
-                -(minus_gfoot_vy_along_x * t300), 0.0,
-                10.40582726326743 * t178 - minus_gfoot_vy_along_z * t326,
-                -(minus_gfoot_vy_along_x * t337), 0.0,
-                -(minus_gfoot_vy_along_z * t366
-                    + minus_gleft_bar_vy_along_z * (t370 - t318 * t318)),
-                -(minus_gfoot_vy_along_x * t378),
+                -(minus_gdrive_vy_along_x * (t182 - t184)), t196,
+                minus_gfoot_vy_along_z * t209 - minus_gdrive_vy_along_z * t204,
+                t184 - minus_gdrive_vy_along_x * t215, t227,
+                minus_gfoot_vy_along_z * t205 - minus_gdrive_vy_along_z * t235,
+                -(minus_gfoot_vy_along_x * t246), 0.0, t270 - minus_gfoot_vy_along_z * t267,
+                -(minus_gfoot_vy_along_x * t277), 0.0,
+                -(minus_gfoot_vy_along_z * t300
+                    + minus_gleft_bar_vy_along_z * (t303 - t269)),
+                -(minus_gfoot_vy_along_x * t313),
                 0.0,
-                minus_gleft_bar_vy_along_z * t320 - minus_gfoot_vy_along_z * t402,
-                10.40582726326743 * (t6 * acceleration[2]),
+                minus_gleft_bar_vy_along_z * t264 - minus_gfoot_vy_along_z * t334,
+                minus_gfoot_vy_along_x * t339,
                 0.0,
-                minus_gfoot_vy_along_z * (3.225806451612903 * acceleration[1])
+                minus_gfoot_vy_along_z * t349
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                -(minus_gdrive_vy_along_x * t434 + minus_gfoot_vy_along_x * t436),
-                t451,
-                3.225806451612903 * t284
-                    - (minus_gdrive_vy_along_z * t466 + minus_gfoot_vy_along_z * t468),
-                minus_gfoot_vy_along_x * t479 - t236,
-                t247,
-                minus_gfoot_vy_along_z * t499 - t261 - minus_gleft_bar_vy_along_z * t178,
+                -(minus_gdrive_vy_along_x * t364 + minus_gfoot_vy_along_x * t366),
+                t384,
+                3.225806451612903 * t205
+                    - (minus_gdrive_vy_along_z * t400 + minus_gfoot_vy_along_z * t402),
+                t215 + minus_gfoot_vy_along_x * t411,
+                t196,
+                minus_gfoot_vy_along_z * t421,
             ],
             [
-                -t73, -(minus_gdrive_vz_along_x * rate_dot_drive_along_x),
-                -(minus_gdrive_vz_along_y * rate_dot_drive_along_y), t184, rate_dot_drive_along_z,
-                -(minus_gdrive_vz_along_x * rate_drive_along_x),
+                -(-9.81 - acceleration[2]), -(minus_gdrive_vz_along_x * rate_dot_drive_along_x),
+                -t90, t133, rate_dot_drive_along_z, -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -(minus_gdrive_vz_along_y * rate_drive_along_y), rate_drive_along_z,
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
                 ::overact::math::sign(rate_drive_along_z), -minus_gdrive_vz_along_x,
                 -minus_gdrive_vz_along_y, minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                minus_gfoot_vz_along_x * t234 - t239, minus_gfoot_vz_along_y * t243 - t251, t257,
-                minus_gfoot_vz_along_x * t53 - minus_gdrive_vz_along_x * t265,
-                minus_gfoot_vz_along_y * t274 - minus_gdrive_vz_along_y * t278, t288,
-                10.40582726326743 * t48 - minus_gfoot_vz_along_x * t300,
-                -(minus_gfoot_vz_along_y * t314), 0.0,
-                -(minus_gfoot_vz_along_x * t337
-                    + minus_gleft_bar_vz_along_x * (t341 - t58)),
-                -(minus_gfoot_vz_along_y * t351),
+                minus_gfoot_vz_along_x * t187 - minus_gdrive_vz_along_x * t182,
+                minus_gfoot_vz_along_y * t192 - minus_gdrive_vz_along_y * t196, t204,
+                minus_gfoot_vz_along_x * t183 - minus_gdrive_vz_along_x * t215,
+                minus_gfoot_vz_along_y * t223 - minus_gdrive_vz_along_y * t227, t235,
+                t249 - minus_gfoot_vz_along_x * t246, -(minus_gfoot_vz_along_y * t258), 0.0,
+                -(minus_gfoot_vz_along_x * t277
+                    + minus_gleft_bar_vz_along_x * (t280 - t248)),
+                -(minus_gfoot_vz_along_y * t288),
                 0.0,
-                minus_gleft_bar_vz_along_x * t295 - minus_gfoot_vz_along_x * t378,
-                -(minus_gfoot_vz_along_y * t391),
+                minus_gleft_bar_vz_along_x * t243 - minus_gfoot_vz_along_x * t313,
+                -(minus_gfoot_vz_along_y * t324),
                 0.0,
-                minus_gfoot_vz_along_x * (3.225806451612903 * acceleration[2])
+                minus_gfoot_vz_along_x * t339
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                10.40582726326743 * (t83 * acceleration[0]),
+                t345,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                minus_gleft_bar_vz_along_x * t56
-                    - (minus_gdrive_vz_along_x * t434 + minus_gfoot_vz_along_x * t436),
-                -(minus_gdrive_vz_along_y * t451 + minus_gfoot_vz_along_y * t453),
-                t466,
-                minus_gfoot_vz_along_x * t479 - t239 - minus_gleft_bar_vz_along_x * t48,
-                minus_gfoot_vz_along_y * t489 - t251,
-                t257,
+                minus_gleft_bar_vz_along_x
+                    * (c_left_bar_along_x * t183 - 9.81 * s_left_bar_along_x)
+                    - (minus_gdrive_vz_along_x * t364 + minus_gfoot_vz_along_x * t366),
+                -(minus_gdrive_vz_along_y * t384 + minus_gfoot_vz_along_y * t386),
+                t400,
+                minus_gfoot_vz_along_x * t411,
+                t227 + minus_gfoot_vz_along_y * t416,
+                t204,
             ],
         ])
     }
@@ -4622,7 +4204,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 571 operations (195 additions, 364 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 489 intermediates.
+    /// 481 operations (165 additions, 307 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 399 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4633,372 +4215,343 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t7, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t9, 1.0, "along_y")?;
-        let t10 = 1.0 / t9;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t10;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t14 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t14);
-        let t18 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t18 * t14;
-        let t25 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t25, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t25);
+        let t4 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t4;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t7 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t8 = 1.0 - t7;
+        ::overact::guard::reach(t8, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t10, 1.0, "along_y")?;
+        let t11 = 1.0 / t10;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t11;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t17 = 1.0 - t2 * t7;
+        ::overact::guard::reach(t17, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t17);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let t19 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t19;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t22 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t24 = 1.0 - t17 * t22;
+        ::overact::guard::reach(t24, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t26 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t26;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
         let t30 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
         ::overact::guard::reach(t30, "along_z")?;
         let c_foot_along_z = ::overact::math::sqrt(t30);
         let t32 = c_left_bar_along_z * c_foot_along_z;
         ::overact::guard::leg(t32, 1.0, "along_z")?;
-        let t33 = 1.0 / t32;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t33;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t32;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t37 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t36 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t37, 1.0, "actuators")?;
-        ::overact::guard::platform(t37, 1.0, "actuators")?;
-        let t38 = 1.0 / t37;
-        let t41 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t41, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t41);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t46 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t46, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t46);
-        let t48 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t48, 1.0, "along_x")?;
-        let t49 = 1.0 / t48;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t49;
+        ::overact::guard::platform(t36, 1.0, "actuators")?;
+        ::overact::guard::platform(t36, 1.0, "actuators")?;
+        let t37 = 1.0 / t36;
+        let t38 = 1.0 - t22;
+        ::overact::guard::reach(t38, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t38);
+        let t40 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t40, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t40;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t52 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t52;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t52);
-        let t59 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t59 * t52;
+        let t44 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t69 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z;
-        let t70 = t69 * t38;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t77 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t77);
-        let t81 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t81 * t77;
-        let t87 = gdrive_vy_along_x + gdrive_vx_along_y
+        let t52 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t54 = gdrive_vz_along_x + t52 + gdrive_vx_along_z;
+        let t55 = t54 * t37;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t64 = gdrive_vy_along_x + gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t89 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t87 * t70;
-        let t94 = t87 * t38;
-        let t96 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t87 * t94;
-        ::overact::guard::platform(t96, 1.0, "actuators")?;
-        ::overact::guard::platform(t96, 1.0, "actuators")?;
-        let t97 = 1.0 / t96;
-        let t98 = t89 * t97;
-        let t100 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t69 * t70 - t89 * t98;
-        ::overact::guard::platform(t100, 1.0, "actuators")?;
-        ::overact::guard::platform(t100, 1.0, "actuators")?;
-        let t101 = 1.0 / t100;
-        let t102 = gdrive_vz_along_x * actuator_velocities[0];
-        let t103 = gdrive_vz_along_y * actuator_velocities[1];
-        let t106 = gdrive_vx_along_y * actuator_velocities[1];
-        let t108 = gdrive_vx_along_z * actuator_velocities[2];
-        let t109 = actuator_velocities[0] + t106 + t108;
-        let t112 = gdrive_vy_along_x * actuator_velocities[0];
-        let t114 = gdrive_vy_along_z * actuator_velocities[2];
-        let t117 = t112 + actuator_velocities[1] + t114 - t109 * t94;
-        let t120 = t101
-            * (t102 + t103 + actuator_velocities[2] - t109 * t70 - t98 * t117);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t120;
-        let t122 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t124 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t126 = t122 * t122 + t124 * t124;
-        let t129 = t97 * t117 - t98 * t120;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t129
-            + minus_gfoot_vz_along_x * t120;
-        let t133 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t134 = t126 + t133;
-        let t137 = pose[2] * (minus_rate_foot_along_x * t124);
-        let t139 = pose[1] * t134 + t137 + t137;
-        let t142 = pose[2] * (minus_rate_foot_along_x * t122);
-        let t148 = pose[2] * minus_rate_foot_along_x;
-        let t149 = minus_rate_foot_along_x * t148;
-        let t151 = t149 - pose[2] * t134;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * t139
-            - (t142 - 0.31 * t48 * t134 + t142) - gdrive_vz_along_x * t151;
-        let t154 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t159 = t109 * t38 - t94 * t129 - t70 * t120;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t159
-            + minus_gfoot_vz_along_y * t120;
-        let t163 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t14;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t159;
-        let t166 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t169 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t171 = t163 + t166 * t166 + t169 * t169;
-        let t174 = pose[0] * (minus_rate_foot_along_y * t169);
-        let t176 = pose[2] * t171 + t174 + t174;
-        let t178 = pose[0] * minus_rate_foot_along_y;
-        let t179 = minus_rate_foot_along_y * t178;
-        let t181 = t179 - pose[0] * t171;
-        let t184 = pose[0] * (minus_rate_foot_along_y * t166);
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t176
-            - (gdrive_vx_along_y * t181 + t184 - 0.31 * t9 * t171 + t184);
-        let t191 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t77;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t129;
-        let t196 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t159
-            + minus_gfoot_vy_along_z * t129;
-        let t201 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t203 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t205 = t196 * t196 + t201 + t203 * t203;
-        let t208 = pose[1] * (minus_rate_foot_along_z * t196);
-        let t210 = pose[0] * t205 + t208 + t208;
-        let t212 = pose[1] * minus_rate_foot_along_z;
-        let t213 = minus_rate_foot_along_z * t212;
-        let t215 = t213 - pose[1] * t205;
-        let t219 = pose[1] * (minus_rate_foot_along_z * t203);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t210 - gdrive_vy_along_z * t215
-            - (t219 - 0.31 * t32 * t205 + t219);
-        let t225 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t227 = t154 + gdrive_vx_along_y * t191 + gdrive_vx_along_z * t225;
-        let t234 = gdrive_vy_along_x * t154 + t191 + gdrive_vy_along_z * t225
-            - t94 * t227;
-        let t244 = t101
-            * (gdrive_vz_along_x * t154 + gdrive_vz_along_y * t191 + t225 - t70 * t227
-                - t98 * t234);
-        let t246 = t97 * t234 - t98 * t244;
-        let t250 = t38 * t227 - t94 * t246 - t70 * t244;
-        let t251 = c_foot_along_x * actuator_accelerations[0];
-        let t255 = 3.225806451612903 * t148;
-        let t256 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t257 = t255 * t256;
-        let t258 = t244 - t151;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t258;
-        let t260 = t257 + minus_rate_dot_left_bar_along_x;
-        let t266 = c_left_bar_along_x * t251 + 31.64516129032258 * pose[2];
-        let t271 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t251 - 9.81 * c_left_bar_along_x - 0.31 * t260)
-            - minus_s_left_bar_along_x
-                * (t266
-                    - c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x));
-        let t276 = 9.81 + actuator_accelerations[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t246 + t139)
-            + minus_gfoot_vz_along_x * t258;
-        let t296 = t250 - t181;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t296
-            + minus_gfoot_vz_along_y * (t244 + t176);
-        let t305 = t246 - t215;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t250 + t210)
-            + minus_gfoot_vy_along_z * t305;
-        let t312 = c_foot_along_x * t133
+        let t66 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t64 * t55;
+        let t69 = t64 * t37;
+        let t71 = t44 + gdrive_vy_along_z * gdrive_vy_along_z - t64 * t69;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = 1.0 / t71;
+        let t73 = t66 * t72;
+        let t75 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t54 * t55 - t66 * t73;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        ::overact::guard::platform(t75, 1.0, "actuators")?;
+        let t76 = 1.0 / t75;
+        let t77 = gdrive_vz_along_x * actuator_velocities[0];
+        let t78 = gdrive_vz_along_y * actuator_velocities[1];
+        let t81 = gdrive_vx_along_y * actuator_velocities[1];
+        let t83 = gdrive_vx_along_z * actuator_velocities[2];
+        let t84 = actuator_velocities[0] + t81 + t83;
+        let t87 = gdrive_vy_along_x * actuator_velocities[0];
+        let t89 = gdrive_vy_along_z * actuator_velocities[2];
+        let t92 = t87 + actuator_velocities[1] + t89 - t84 * t69;
+        let t95 = t76 * (t77 + t78 + actuator_velocities[2] - t84 * t55 - t73 * t92);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t95;
+        let t97 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t100 = t72 * t92 - t73 * t95;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t103 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t104 = t103 * t19;
+        let t105 = minus_gfoot_vy_along_x * t104;
+        let minus_gfoot_vz_along_x = gdrive_vy_along_x * t105;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t100
+            + minus_gfoot_vz_along_x * t95;
+        let t109 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t110 = t97 + t109;
+        let t113 = pose[2] * t97;
+        let rate_dot_drive_along_x = t44 * (0.31 * t40 * t110)
+            + gdrive_vz_along_x * t113;
+        let t116 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t117 = t8 * t52;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t117;
+        let t123 = t84 * t37 - t69 * t100 - t55 * t95;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t123
+            + minus_gfoot_vz_along_y * t95;
+        let t127 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t123;
+        let t129 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t130 = t127 + t129;
+        let t133 = pose[0] * minus_rate_foot_along_y;
+        let t134 = c_foot_along_y * minus_rate_left_bar_along_y * t133;
+        let t136 = pose[2] * t130 + t134 + t134;
+        let t138 = pose[0] * t129;
+        let t140 = gdrive_vz_along_y * t134;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t136
+            - (t140 - 0.31 * t10 * t130 + t140 - gdrive_vx_along_y * t138);
+        let t147 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let t151 = pose[1] * minus_gleft_bar_vy_along_z;
+        let t152 = minus_gleft_bar_vy_along_z * t151;
+        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t152;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t123
+            + minus_gfoot_vy_along_z * t100;
+        let t156 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t100;
+        let t158 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t159 = t156 + t158;
+        let t163 = c_foot_along_z * minus_rate_left_bar_along_z
+            * (pose[1] * minus_rate_foot_along_z);
+        let t165 = pose[0] * t159 + t163 + t163;
+        let t167 = pose[1] * t158;
+        let t170 = gdrive_vx_along_z * t163;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t165 + gdrive_vy_along_z * t167
+            - (t170 - 0.31 * t32 * t159 + t170);
+        let t176 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t178 = t116 + gdrive_vx_along_y * t147 + gdrive_vx_along_z * t176;
+        let t185 = gdrive_vy_along_x * t116 + t147 + gdrive_vy_along_z * t176
+            - t69 * t178;
+        let t195 = t76
+            * (gdrive_vz_along_x * t116 + gdrive_vz_along_y * t147 + t176 - t55 * t178
+                - t73 * t185);
+        let t197 = t72 * t185 - t73 * t195;
+        let t201 = t37 * t178 - t69 * t197 - t55 * t195;
+        let t206 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t207 = 9.81 + actuator_accelerations[2];
+        let t222 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t223 = minus_rate_left_bar_along_x * t222;
+        let t225 = t223 * (0.31 * t104);
+        let t230 = t195 + t113;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t197 + pose[1] * t110 + t225 + t225) + minus_gfoot_vz_along_x * t230;
+        let t233 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t235 = t201 + t138;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t235
+            + minus_gfoot_vz_along_y * (t195 + t136);
+        let t244 = t197 + t167;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t201 + t165)
+            + minus_gfoot_vy_along_z * t244;
+        let t251 = c_foot_along_x * t109
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t313 = gdrive_vy_along_x * t312;
-        let t314 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t317 = gdrive_vz_along_x * t312;
-        let t322 = c_foot_along_y * t163
+        let t252 = gdrive_vy_along_x * t251;
+        let t253 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t261 = c_foot_along_y * t127
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t323 = gdrive_vx_along_y * t322;
-        let t326 = minus_s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * c_foot_along_y;
-        let t329 = gdrive_vz_along_y * t322;
-        let t334 = c_foot_along_z * t201
+        let t264 = c_foot_along_y * (9.81 - t206);
+        let t272 = c_foot_along_z * t156
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t335 = gdrive_vx_along_z * t334;
-        let t336 = minus_s_foot_along_z * t276;
-        let t339 = gdrive_vy_along_z * t334;
-        let t344 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t133;
-        let t353 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t163;
-        let t357 = 9.81 * minus_s_foot_along_y
+        let t273 = c_foot_along_z * t207;
+        let t274 = minus_gfoot_vx_along_z * t273;
+        let t278 = minus_s_foot_along_z * t207;
+        let t281 = 0.31 * c_left_bar_along_x;
+        let t283 = t233 * t281 - t252;
+        let t285 = c_foot_along_x * actuator_accelerations[0];
+        let t293 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t127;
+        let t297 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t365 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t201;
-        let t367 = c_foot_along_z * t276;
-        let t373 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t374 = minus_rate_left_bar_along_x * t256;
-        let t375 = t373 + t374;
-        let t377 = minus_rate_left_bar_along_x * t255;
-        let t379 = minus_s_left_bar_along_x * t375 + c_left_bar_along_x * t377;
-        let t384 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t385 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t386 = minus_rate_left_bar_along_y * t385;
-        let t387 = t384 + t386;
-        let t389 = 3.225806451612903 * t178;
-        let t390 = minus_rate_left_bar_along_y * t389;
-        let t392 = minus_s_left_bar_along_y * t387 + c_left_bar_along_y * t390;
-        let t397 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t398 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t399 = minus_rate_left_bar_along_z * t398;
-        let t400 = t397 + t399;
-        let t402 = 3.225806451612903 * t212;
-        let t403 = minus_rate_left_bar_along_z * t402;
-        let t405 = minus_s_left_bar_along_z * t400 + c_left_bar_along_z * t403;
-        let t410 = t374 + t375;
-        let t412 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t414 = t377 + t377 - t412;
-        let t416 = c_left_bar_along_x * t410 - minus_s_left_bar_along_x * t414;
-        let t420 = 10.40582726326743 * (t148 * t148);
-        let t425 = t386 + t387;
-        let t427 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t429 = t390 + t390 - t427;
-        let t431 = c_left_bar_along_y * t425 - minus_s_left_bar_along_y * t429;
-        let t434 = 10.40582726326743 * (t178 * t178);
-        let t440 = t399 + t400;
-        let t442 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t444 = t403 + t403 - t442;
-        let t446 = c_left_bar_along_z * t440 - minus_s_left_bar_along_z * t444;
-        let t450 = 10.40582726326743 * (t212 * t212);
-        let t458 = minus_s_left_bar_along_x * t260 + c_left_bar_along_x * (t126 - t420);
-        let t463 = t389 * t385;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t296;
-        let t467 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t470 = minus_s_left_bar_along_y * (t463 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t467 - t434);
-        let t475 = t402 * t398;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t305;
-        let t479 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t482 = minus_s_left_bar_along_z * (t475 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t479 - t450);
-        let t514 = t48 * (minus_rate_dot_left_bar_along_x - t257) - t59 * (t420 + t126)
-            - minus_s_foot_along_x * t410;
-        let t516 = minus_s_left_bar_along_x * t314;
-        let t530 = t9 * (minus_rate_dot_left_bar_along_y - t463) - t18 * (t434 + t467)
-            - minus_s_foot_along_y * t425;
-        let t532 = minus_s_left_bar_along_y * t326;
-        let t546 = t32 * (minus_rate_dot_left_bar_along_z - t475) - t81 * (t450 + t479)
-            - minus_s_foot_along_z * t440;
-        let t548 = minus_s_left_bar_along_z * t336;
-        let t559 = t314 + 0.31 * t414 - 0.31 * t412;
-        let t570 = t326 + 0.31 * t429 - 0.31 * t427;
-        let t579 = t336 + 0.31 * t444 - 0.31 * t442;
+        let t305 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t156;
+        let t311 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t313 = t223 + t311 + t223;
+        let t314 = minus_s_left_bar_along_x * t313;
+        let t317 = t222 * t222;
+        let t318 = t317 * t105;
+        let t320 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t321 = minus_rate_left_bar_along_y * t320;
+        let t322 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t324 = t321 + t322 + t321;
+        let t325 = minus_s_left_bar_along_y * t324;
+        let t328 = 3.225806451612903 * t133 * t320;
+        let t329 = minus_gleft_bar_vx_along_y * t328;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t333 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t334 = minus_rate_left_bar_along_z * t333;
+        let t335 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t337 = t334 + t335 + t334;
+        let t338 = minus_s_left_bar_along_z * t337;
+        let t341 = t333 * t333;
+        let t342 = t341 * t152;
+        let t346 = t19 * (minus_rate_dot_foot_along_x - t314);
+        let t348 = c_left_bar_along_x * t313 + minus_s_left_bar_along_x * t346;
+        let t351 = pose[2] * t318;
+        let t357 = t4 * (minus_rate_dot_foot_along_y - t325);
+        let t359 = c_left_bar_along_y * t324 + minus_s_left_bar_along_y * t357;
+        let t361 = pose[0] * t329;
+        let t369 = t26 * (minus_rate_dot_foot_along_z - t338);
+        let t371 = c_left_bar_along_z * t337 + minus_s_left_bar_along_z * t369;
+        let t374 = pose[1] * t342;
+        let t378 = t318 * t281;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t230;
+        let t384 = minus_s_left_bar_along_x * (t378 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t97 - t351);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t235;
+        let t394 = minus_s_left_bar_along_y * (t328 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t129 - t361);
+        let t399 = t341 * t151;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t244;
+        let t405 = minus_s_left_bar_along_z * (t399 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t158 - t374);
+        let t410 = 3.225806451612903 * t195;
+        let t416 = 10.40582726326743 * (t11 * t201);
+        let t420 = 3.225806451612903 * t197;
+        let t434 = t40 * (minus_rate_dot_left_bar_along_x - t378) - t103 * (t351 + t97)
+            - minus_s_foot_along_x * t313;
+        let t436 = minus_s_left_bar_along_x * t253;
+        let t454 = t10 * (minus_rate_dot_left_bar_along_y - t328)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t361 + t129)
+            - minus_s_foot_along_y * t324;
+        let t456 = minus_s_left_bar_along_y * t264;
+        let t471 = t32 * (minus_rate_dot_left_bar_along_z - t399)
+            - minus_s_left_bar_along_z * c_foot_along_z * (t374 + t158)
+            - minus_s_foot_along_z * t337;
+        let t473 = minus_s_left_bar_along_z * t278;
+        let t482 = t253 - 0.31 * t346;
+        let t487 = t264 + 0.31 * t357;
+        let t492 = t278 - 0.31 * t369;
         Ok([
             [
-                t250, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
-                gdrive_vx_along_z * t276, gdrive_vx_along_z * actuator_accelerations[2],
-                actuator_velocities[0], t106, t108, ::overact::math::sign(actuator_velocities[0]),
+                t201, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
+                gdrive_vx_along_z * t207, gdrive_vx_along_z * actuator_accelerations[2],
+                actuator_velocities[0], t81, t83, ::overact::math::sign(actuator_velocities[0]),
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
                 ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]), 1.0,
                 gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t312,
-                -(t323 + minus_gfoot_vx_along_y * t326), -(t335 + minus_gfoot_vx_along_z * t336),
-                t344, gdrive_vx_along_y * t353 + minus_gfoot_vx_along_y * t357,
-                gdrive_vx_along_z * t365 + minus_gfoot_vx_along_z * t367, 0.0,
-                minus_gfoot_vx_along_y * t392 - 10.40582726326743 * t179,
-                minus_gfoot_vx_along_z * t405, 0.0,
-                -(minus_gfoot_vx_along_y * t431
-                    + minus_gleft_bar_vx_along_y * (t434 - t385 * t385)),
-                -(minus_gfoot_vx_along_z * t446),
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t251,
+                -(gdrive_vx_along_y * t261 - minus_gfoot_vx_along_y * t264),
+                -(gdrive_vx_along_z * (t272 + t274)), t283,
+                gdrive_vx_along_y * t293 + minus_gfoot_vx_along_y * t297,
+                gdrive_vx_along_z * t305 + t274, 0.0, minus_gfoot_vx_along_y * t325 - t329,
+                minus_gfoot_vx_along_z * t338, 0.0,
+                -(minus_gfoot_vx_along_y * t359
+                    + minus_gleft_bar_vx_along_y * (t361 - t320 * t320)),
+                -(minus_gfoot_vx_along_z * t371),
                 0.0,
-                -(minus_gfoot_vx_along_y * t470 + minus_gleft_bar_vx_along_y * t384),
-                -(minus_gfoot_vx_along_z * t482),
+                -(minus_gfoot_vx_along_y * t394 + minus_gleft_bar_vx_along_y * t322),
+                -(minus_gfoot_vx_along_z * t405),
                 0.0,
-                minus_gfoot_vx_along_y * (3.225806451612903 * t250)
-                    + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                10.40582726326743 * (t33 * t246),
+                t117 * t416 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t420,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t514,
-                gdrive_vx_along_y * t530 - minus_gfoot_vx_along_y * t532
-                    + 3.225806451612903 * t357,
-                gdrive_vx_along_z * t546 - minus_gfoot_vx_along_z * t548,
-                -t312,
-                minus_gleft_bar_vx_along_y * t179
-                    - (t323 + minus_gfoot_vx_along_y * t570),
-                -(t335 + minus_gfoot_vx_along_z * t579),
+                t434,
+                gdrive_vx_along_y * t454 + minus_gfoot_vx_along_y * t456
+                    + 3.225806451612903 * t297,
+                gdrive_vx_along_z * t471 - minus_gfoot_vx_along_z * t473,
+                -t251,
+                minus_gfoot_vx_along_y * t487,
+                -(minus_gfoot_vx_along_z * t492 - t305),
             ],
             [
-                t246, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
-                gdrive_vy_along_z * t276, gdrive_vy_along_z * actuator_accelerations[2], t112,
-                actuator_velocities[1], t114,
+                t197, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
+                gdrive_vy_along_z * t207, gdrive_vy_along_z * actuator_accelerations[2], t87,
+                actuator_velocities[1], t89,
                 ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
                 ::overact::math::sign(actuator_velocities[1]),
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
-                gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
+                gdrive_vy_along_x, 1.0, t233, 0.0,
                 minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                -(t313 + minus_gfoot_vy_along_x * t314), -t322,
-                -(t339 + minus_gfoot_vy_along_z * t336),
-                gdrive_vy_along_x * t344 + minus_gfoot_vy_along_x * t251, t353,
-                gdrive_vy_along_z * t365 + minus_gfoot_vy_along_z * t367,
-                minus_gfoot_vy_along_x * t379, 0.0,
-                minus_gfoot_vy_along_z * t405 - 10.40582726326743 * t213,
-                -(minus_gfoot_vy_along_x * t416), 0.0,
-                -(minus_gfoot_vy_along_z * t446
-                    + minus_gleft_bar_vy_along_z * (t450 - t398 * t398)),
-                -(minus_gfoot_vy_along_x * t458),
+                -(t252 + minus_gfoot_vy_along_x * t253), -t261,
+                -(gdrive_vy_along_z * t272 + minus_gfoot_vy_along_z * t278),
+                gdrive_vy_along_x * t283 + minus_gfoot_vy_along_x * t285, t293,
+                gdrive_vy_along_z * t305 + minus_gfoot_vy_along_z * t273,
+                minus_gfoot_vy_along_x * t314, 0.0, minus_gfoot_vy_along_z * t338 - t342,
+                -(minus_gfoot_vy_along_x * t348), 0.0,
+                -(minus_gfoot_vy_along_z * t371
+                    + minus_gleft_bar_vy_along_z * (t374 - t341)),
+                -(minus_gfoot_vy_along_x * t384),
                 0.0,
-                -(minus_gfoot_vy_along_z * t482 + minus_gleft_bar_vy_along_z * t397),
-                10.40582726326743 * (t49 * t244),
+                -(minus_gfoot_vy_along_z * t405 + minus_gleft_bar_vy_along_z * t335),
+                minus_gfoot_vy_along_x * t410,
                 0.0,
-                minus_gfoot_vy_along_z * (3.225806451612903 * t246)
+                minus_gfoot_vy_along_z * t420
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                gdrive_vy_along_x * t514 - minus_gfoot_vy_along_x * t516,
-                t530,
-                gdrive_vy_along_z * t546 - minus_gfoot_vy_along_z * t548
-                    + 3.225806451612903 * t367,
-                -(t313 + minus_gfoot_vy_along_x * t559),
-                -t322,
-                minus_gleft_bar_vy_along_z * t213
-                    - (t339 + minus_gfoot_vy_along_z * t579),
+                gdrive_vy_along_x * t434 - minus_gfoot_vy_along_x * t436,
+                t454,
+                gdrive_vy_along_z * t471 - minus_gfoot_vy_along_z * t473
+                    + 3.225806451612903 * t273,
+                -(minus_gfoot_vy_along_x * t482 - t283),
+                -t261,
+                -(minus_gfoot_vy_along_z * t492),
             ],
             [
-                -t271, gdrive_vz_along_x * actuator_accelerations[0],
-                gdrive_vz_along_y * actuator_accelerations[1], t276, actuator_accelerations[2],
-                t102, t103, actuator_velocities[2],
+                -(-9.81 - t195), gdrive_vz_along_x * actuator_accelerations[0], t206, t207,
+                actuator_accelerations[2], t77, t78, actuator_velocities[2],
                 ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
                 ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
                 ::overact::math::sign(actuator_velocities[2]), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                -(t317 + minus_gfoot_vz_along_x * t314), -(t329 + minus_gfoot_vz_along_y * t326),
-                -t334, gdrive_vz_along_x * t344 + minus_gfoot_vz_along_x * t251,
-                gdrive_vz_along_y * t353 + minus_gfoot_vz_along_y * t357, t365,
-                minus_gfoot_vz_along_x * t379 - 10.40582726326743 * t149,
-                minus_gfoot_vz_along_y * t392, 0.0,
-                -(minus_gfoot_vz_along_x * t416
-                    + minus_gleft_bar_vz_along_x * (t420 - t256 * t256)),
-                -(minus_gfoot_vz_along_y * t431),
+                -(gdrive_vz_along_x * t251 + minus_gfoot_vz_along_x * t253),
+                -(gdrive_vz_along_y * t261 - minus_gfoot_vz_along_y * t264), -t272,
+                gdrive_vz_along_x * t283 + minus_gfoot_vz_along_x * t285,
+                gdrive_vz_along_y * t293 + minus_gfoot_vz_along_y * t297, t305,
+                minus_gfoot_vz_along_x * t314 - t318, minus_gfoot_vz_along_y * t325, 0.0,
+                -(minus_gfoot_vz_along_x * t348
+                    + minus_gleft_bar_vz_along_x * (t351 - t317)),
+                -(minus_gfoot_vz_along_y * t359),
                 0.0,
-                -(minus_gfoot_vz_along_x * t458 + minus_gleft_bar_vz_along_x * t373),
-                -(minus_gfoot_vz_along_y * t470),
+                -(minus_gfoot_vz_along_x * t384 + minus_gleft_bar_vz_along_x * t311),
+                -(minus_gfoot_vz_along_y * t394),
                 0.0,
-                minus_gfoot_vz_along_x * (3.225806451612903 * t244)
+                minus_gfoot_vz_along_x * t410
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                10.40582726326743 * (t10 * t250),
+                t416,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                gdrive_vz_along_x * t514 - minus_gfoot_vz_along_x * t516
-                    + minus_gleft_bar_vz_along_x * t266,
-                gdrive_vz_along_y * t530 - minus_gfoot_vz_along_y * t532,
-                t546,
-                minus_gleft_bar_vz_along_x * t149
-                    - (t317 + minus_gfoot_vz_along_x * t559),
-                -(t329 + minus_gfoot_vz_along_y * t570),
-                -t334,
+                gdrive_vz_along_x * t434 - minus_gfoot_vz_along_x * t436
+                    + minus_gleft_bar_vz_along_x
+                        * (c_left_bar_along_x * t285 + 31.64516129032258 * pose[2]),
+                gdrive_vz_along_y * t454 + minus_gfoot_vz_along_y * t456,
+                t471,
+                -(minus_gfoot_vz_along_x * t482),
+                t293 + minus_gfoot_vz_along_y * t487,
+                -t272,
             ],
         ])
     }
@@ -5012,7 +4565,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 640 operations (212 additions, 418 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 546 intermediates.
+    /// 589 operations (196 additions, 386 multiplications, 7 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 495 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5021,340 +4574,333 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t2, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t7, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t9, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t14 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t14, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t14);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t19 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t19, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t19);
-        let t21 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t21, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t25 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t25);
-        let t29 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t29 * t25;
-        let t33 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t36 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t36, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t36);
+        let t1 = minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        let t2 = 1.0 - t1;
+        ::overact::guard::reach(t2, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let t4 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t4;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t7 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t8 = t2 * t7;
+        let t9 = 1.0 - t8;
+        ::overact::guard::reach(t9, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t9);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let t11 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t11;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t14 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t15 = 1.0 - t14;
+        ::overact::guard::reach(t15, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t15);
+        let t17 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t17, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t17;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t20 = 1.0 - t7;
+        ::overact::guard::reach(t20, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t20);
+        let t22 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t22, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t22;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t26 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t27 = t9 * t14;
+        let t28 = 1.0 - t27;
+        ::overact::guard::reach(t28, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t28);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t41 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t41, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t41);
-        let t43 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t43, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t43;
+        let t30 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t30;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t34 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t34, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t34);
+        let t36 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t36, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t36;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t48 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t48);
-        let t52 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t52 * t48;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t57 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let t42 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t47 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t49 = t26 - gdrive_vy_along_x * t42 + gdrive_vz_along_x * t47;
+        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
+        let t50 = 1.0 / t49;
+        let t51 = t26 * t50;
+        let t53 = t42 * t50;
+        let t56 = t47 * t50;
+        let t57 = -9.81 - acceleration[2];
+        let t62 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t50;
+        let t66 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t50;
+        let t71 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t50;
+        let t76 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t50;
+        let t80 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t50;
+        let t85 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t50;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t62 = 1.0 / c_left_bar_along_x;
+        let t92 = minus_s_left_bar_along_x * c_foot_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t62);
-        let t66 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t66 * t62;
-        let t70 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t72 = t33 - gdrive_vy_along_x * t57 + gdrive_vz_along_x * t70;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        let t73 = 1.0 / t72;
-        let t74 = t33 * t73;
-        let t76 = t57 * t73;
-        let t79 = t70 * t73;
+            * (gdrive_vy_along_x * (t92 * t30));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t62;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t85 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t87 = pose[2] * (minus_rate_foot_along_x * t85);
-        let t90 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t92 = t85 * t85 + t90 * t90;
-        let t93 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t94 = t92 + t93;
-        let t101 = pose[2] * (minus_rate_foot_along_x * t90);
-        let t104 = acceleration[1] + pose[1] * t94 + t101 + t101;
-        let t107 = pose[2] * minus_rate_foot_along_x;
-        let t108 = minus_rate_foot_along_x * t107;
-        let t111 = acceleration[2] - (t108 - pose[2] * t94);
-        let rate_dot_drive_along_x = acceleration[0] - (t87 - 0.31 * t43 * t94 + t87)
-            + gdrive_vy_along_x * t104 + gdrive_vz_along_x * t111;
-        let t114 = c_foot_along_x * rate_dot_drive_along_x;
-        let t118 = 3.225806451612903 * t107;
-        let t119 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t120 = t118 * t119;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t111;
-        let t122 = t120 + minus_rate_dot_left_bar_along_x;
-        let t128 = c_left_bar_along_x * t114 + 31.64516129032258 * pose[2];
-        let t129 = t119 * t119;
-        let t134 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t114 - 9.81 * c_left_bar_along_x - 0.31 * t122)
-            - minus_s_left_bar_along_x * (t128 - 0.31 * (t129 + t92));
-        let t139 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t73;
-        let t143 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t73;
-        let t148 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t73;
-        let t153 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t73;
-        let t157 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t73;
-        let t162 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t73;
+        let t98 = pose[2] * minus_rate_foot_along_x;
+        let t99 = c_foot_along_x * minus_rate_left_bar_along_x * t98;
+        let t100 = gdrive_vy_along_x * t99;
+        let t102 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t103 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t104 = t102 + t103;
+        let t112 = acceleration[1] + pose[1] * t104 + t99 + t99;
+        let t116 = acceleration[2] + pose[2] * t102;
+        let rate_dot_drive_along_x = acceleration[0] - (t100 - 0.31 * t36 * t104 + t100)
+            + gdrive_vy_along_x * t112 + gdrive_vz_along_x * t116;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t120 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t122 = acceleration[0] + pose[0] * t120;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t125 = minus_s_left_bar_along_y * c_foot_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (gdrive_vz_along_y * (t125 * t11));
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t168 = pose[0] * minus_rate_foot_along_y;
-        let t169 = minus_rate_foot_along_y * t168;
-        let t170 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t48;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t173 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t176 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t178 = t170 + t173 * t173 + t176 * t176;
-        let t181 = acceleration[0] - (t169 - pose[0] * t178);
-        let t184 = pose[0] * (minus_rate_foot_along_y * t173);
-        let t193 = pose[0] * (minus_rate_foot_along_y * t176);
-        let t196 = acceleration[2] + pose[2] * t178 + t193 + t193;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t181 + acceleration[1]
-            - (t184 - 0.31 * t9 * t178 + t184) + gdrive_vz_along_y * t196;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t25;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t201 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t132 = pose[0] * minus_rate_foot_along_y;
+        let t134 = t132 * (c_foot_along_y * minus_rate_left_bar_along_y);
+        let t135 = gdrive_vz_along_y * t134;
+        let t137 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t138 = t137 + t120;
+        let t147 = acceleration[2] + pose[2] * t138 + t134 + t134;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t122 + acceleration[1]
+            - (t135 - 0.31 * t17 * t138 + t135) + gdrive_vz_along_y * t147;
+        let t151 = minus_s_left_bar_along_z * c_foot_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (t151 * t4 * gdrive_vx_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t206 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t208 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t210 = t201 * t201 + t206 + t208 * t208;
-        let t213 = pose[1] * (minus_rate_foot_along_z * t201);
-        let t216 = acceleration[0] + pose[0] * t210 + t213 + t213;
-        let t218 = pose[1] * minus_rate_foot_along_z;
-        let t219 = minus_rate_foot_along_z * t218;
-        let t222 = acceleration[1] - (t219 - pose[1] * t210);
-        let t226 = pose[1] * (minus_rate_foot_along_z * t208);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t216 + gdrive_vy_along_z * t222
-            + acceleration[2] - (t226 - 0.31 * t21 * t210 + t226);
-        let t233 = 9.81 + rate_dot_drive_along_z;
+        let t157 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t159 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t160 = t157 + t159;
+        let t163 = pose[1] * minus_rate_foot_along_z;
+        let t164 = c_foot_along_z * minus_rate_left_bar_along_z * t163;
+        let t167 = acceleration[0] + pose[0] * t160 + t164 + t164;
+        let t170 = acceleration[1] + pose[1] * t159;
+        let t173 = gdrive_vx_along_z * t164;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t167 + gdrive_vy_along_z * t170
+            + acceleration[2] - (t173 - 0.31 * t22 * t160 + t173);
+        let t180 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let t251 = minus_gfoot_vy_along_x * t76 - minus_gfoot_vz_along_x * t79;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t104
-            + minus_gfoot_vz_along_x * t111;
-        let t258 = minus_gfoot_vz_along_x * t148 - minus_gfoot_vy_along_x * t139;
-        let t262 = minus_gfoot_vy_along_x * t157 - minus_gfoot_vz_along_x * t162;
-        let t266 = minus_gfoot_vx_along_y * t74 + minus_gfoot_vz_along_y * t79;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t181
-            + minus_gfoot_vz_along_y * t196;
-        let t273 = minus_gfoot_vx_along_y * t143 + minus_gfoot_vz_along_y * t148;
-        let t277 = minus_gfoot_vx_along_y * t153 + minus_gfoot_vz_along_y * t162;
-        let t281 = minus_gfoot_vy_along_z * t76 - minus_gfoot_vx_along_z * t74;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t216
-            + minus_gfoot_vy_along_z * t222;
-        let t288 = minus_gfoot_vx_along_z * t143 - minus_gfoot_vy_along_z * t139;
-        let t292 = minus_gfoot_vy_along_z * t157 - minus_gfoot_vx_along_z * t153;
-        let t294 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t298 = c_foot_along_x * t93
+        let t198 = minus_gfoot_vy_along_x * t53 - minus_gfoot_vz_along_x * t56;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t112
+            + minus_gfoot_vz_along_x * t116;
+        let t205 = minus_gfoot_vz_along_x * t71 - minus_gfoot_vy_along_x * t62;
+        let t209 = minus_gfoot_vy_along_x * t80 - minus_gfoot_vz_along_x * t85;
+        let t213 = minus_gfoot_vx_along_y * t51 + minus_gfoot_vz_along_y * t56;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t122
+            + minus_gfoot_vz_along_y * t147;
+        let t220 = minus_gfoot_vx_along_y * t66 + minus_gfoot_vz_along_y * t71;
+        let t224 = minus_gfoot_vx_along_y * t76 + minus_gfoot_vz_along_y * t85;
+        let t228 = minus_gfoot_vy_along_z * t53 - minus_gfoot_vx_along_z * t51;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t167
+            + minus_gfoot_vy_along_z * t170;
+        let t235 = minus_gfoot_vx_along_z * t66 - minus_gfoot_vy_along_z * t62;
+        let t239 = minus_gfoot_vy_along_z * t80 - minus_gfoot_vx_along_z * t76;
+        let t241 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t245 = c_foot_along_x * t103
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t304 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t309 = c_foot_along_y * t170
+        let t251 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t256 = c_foot_along_y * t137
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t312 = minus_s_foot_along_z * t233;
-        let t318 = c_foot_along_z * t206
+        let t259 = minus_s_foot_along_z * t180;
+        let t265 = c_foot_along_z * t157
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t329 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t337 = c_foot_along_z * t233;
-        let t345 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t346 = minus_rate_left_bar_along_x * t119;
-        let t347 = t345 + t346;
-        let t349 = minus_rate_left_bar_along_x * t118;
-        let t351 = minus_s_left_bar_along_x * t347 + c_left_bar_along_x * t349;
-        let t353 = minus_gleft_bar_vz_along_x * t79;
-        let t356 = minus_gleft_bar_vz_along_x * t148;
-        let t361 = minus_gleft_bar_vz_along_x * t162;
-        let t364 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t365 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t366 = minus_rate_left_bar_along_y * t365;
-        let t367 = t364 + t366;
-        let t369 = 3.225806451612903 * t168;
-        let t370 = minus_rate_left_bar_along_y * t369;
-        let t372 = minus_s_left_bar_along_y * t367 + c_left_bar_along_y * t370;
-        let t374 = minus_gleft_bar_vx_along_y * t74;
-        let t375 = t369 * t365;
-        let t378 = minus_gleft_bar_vx_along_y * t143;
-        let t383 = minus_gleft_bar_vx_along_y * t153;
-        let t386 = minus_gleft_bar_vy_along_z * t76;
-        let t387 = 3.225806451612903 * t218;
-        let t388 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t389 = t387 * t388;
-        let t391 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t392 = minus_rate_left_bar_along_z * t388;
-        let t393 = t391 + t392;
-        let t395 = minus_rate_left_bar_along_z * t387;
-        let t397 = minus_s_left_bar_along_z * t393 + c_left_bar_along_z * t395;
-        let t401 = minus_gleft_bar_vy_along_z * t139;
-        let t404 = minus_gleft_bar_vy_along_z * t157;
-        let t408 = t346 + t347;
-        let t410 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t412 = t349 + t349 - t410;
-        let t414 = c_left_bar_along_x * t408 - minus_s_left_bar_along_x * t412;
-        let t417 = 10.40582726326743 * (t107 * t107);
-        let t418 = t417 - t129;
-        let t427 = t366 + t367;
-        let t429 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t431 = t370 + t370 - t429;
-        let t433 = c_left_bar_along_y * t427 - minus_s_left_bar_along_y * t431;
-        let t436 = 10.40582726326743 * (t168 * t168);
-        let t438 = t436 - t365 * t365;
-        let t447 = t392 + t393;
-        let t449 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t451 = t395 + t395 - t449;
-        let t453 = c_left_bar_along_z * t447 - minus_s_left_bar_along_z * t451;
-        let t456 = 10.40582726326743 * (t218 * t218);
-        let t458 = t456 - t388 * t388;
-        let t470 = minus_s_left_bar_along_x * t122 + c_left_bar_along_x * (t92 - t417);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t181;
-        let t483 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t486 = minus_s_left_bar_along_y * (t375 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t483 - t436);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t222;
-        let t499 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t502 = minus_s_left_bar_along_z * (t389 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t499 - t456);
-        let t513 = 3.225806451612903 * acceleration[2];
-        let t522 = 3.225806451612903 * acceleration[0];
-        let t532 = 3.225806451612903 * acceleration[1];
-        let t558 = minus_s_left_bar_along_x * t294;
-        let t562 = t43 * (minus_rate_dot_left_bar_along_x - t120) - t66 * (t417 + t92)
-            - minus_s_foot_along_x * t408 + t251 * t558 + t353 * t128;
-        let t569 = c_left_bar_along_y * t329;
-        let t571 = minus_s_left_bar_along_y * t304;
-        let t584 = t9 * (minus_rate_dot_left_bar_along_y - t375) - t52 * (t436 + t483)
-            - minus_s_foot_along_y * t427 + t273 * t571 - t378 * t569;
-        let t588 = minus_s_left_bar_along_z * t312;
-        let t590 = c_left_bar_along_z * t337;
-        let t606 = t21 * (minus_rate_dot_left_bar_along_z - t389) - t29 * (t456 + t499)
-            - minus_s_foot_along_z * t447 + t292 * t588 - t404 * t590;
-        let t610 = t294 + 0.31 * t412 - 0.31 * t410;
-        let t625 = t304 + 0.31 * t431 - 0.31 * t429;
-        let t638 = t312 + 0.31 * t451 - 0.31 * t449;
+        let t270 = c_foot_along_x * rate_dot_drive_along_x;
+        let t277 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t285 = c_foot_along_z * t180;
+        let t293 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t294 = minus_rate_left_bar_along_x * t293;
+        let t295 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t297 = t294 + t295 + t294;
+        let t298 = minus_s_left_bar_along_x * t297;
+        let t300 = minus_gleft_bar_vz_along_x * t56;
+        let t301 = 3.225806451612903 * t98;
+        let t302 = t301 * t293;
+        let t305 = minus_gleft_bar_vz_along_x * t71;
+        let t310 = minus_gleft_bar_vz_along_x * t85;
+        let t313 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t314 = minus_rate_left_bar_along_y * t313;
+        let t315 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t317 = t314 + t315 + t314;
+        let t318 = minus_s_left_bar_along_y * t317;
+        let t320 = minus_gleft_bar_vx_along_y * t51;
+        let t321 = 3.225806451612903 * t132;
+        let t322 = t321 * t313;
+        let t325 = minus_gleft_bar_vx_along_y * t66;
+        let t330 = minus_gleft_bar_vx_along_y * t76;
+        let t333 = minus_gleft_bar_vy_along_z * t53;
+        let t334 = 3.225806451612903 * t163;
+        let t335 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t336 = t334 * t335;
+        let t338 = minus_rate_left_bar_along_z * t335;
+        let t339 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t341 = t338 + t339 + t338;
+        let t342 = minus_s_left_bar_along_z * t341;
+        let t346 = minus_gleft_bar_vy_along_z * t62;
+        let t349 = minus_gleft_bar_vy_along_z * t80;
+        let t354 = minus_rate_left_bar_along_x * t301;
+        let t355 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t357 = t354 + t354 - t355;
+        let t359 = c_left_bar_along_x * t297 - minus_s_left_bar_along_x * t357;
+        let t361 = t27 * t103;
+        let t363 = t361 - t293 * t293;
+        let t373 = minus_rate_left_bar_along_y * t321;
+        let t374 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t376 = t373 + t373 - t374;
+        let t378 = c_left_bar_along_y * t317 - minus_s_left_bar_along_y * t376;
+        let t380 = t8 * t137;
+        let t382 = t380 - t313 * t313;
+        let t392 = minus_rate_left_bar_along_z * t334;
+        let t393 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t395 = t392 + t392 - t393;
+        let t397 = c_left_bar_along_z * t341 - minus_s_left_bar_along_z * t395;
+        let t399 = t1 * t157;
+        let t401 = t399 - t335 * t335;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t116;
+        let t415 = minus_s_left_bar_along_x * (t302 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t102 - t361);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t122;
+        let t430 = minus_s_left_bar_along_y * (t322 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t120 - t380);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t170;
+        let t445 = minus_s_left_bar_along_z * (t336 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t159 - t399);
+        let t456 = 3.225806451612903 * acceleration[2];
+        let t465 = 3.225806451612903 * acceleration[0];
+        let t475 = 3.225806451612903 * acceleration[1];
+        let t501 = minus_s_left_bar_along_x * t241;
+        let t506 = c_left_bar_along_x * t270 + 31.64516129032258 * pose[2];
+        let t508 = t36 * (minus_rate_dot_left_bar_along_x - t302) - t92 * (t361 + t102)
+            - minus_s_foot_along_x * t297 + t198 * t501 + t300 * t506;
+        let t515 = c_left_bar_along_y * t277;
+        let t517 = minus_s_left_bar_along_y * t251;
+        let t530 = t17 * (minus_rate_dot_left_bar_along_y - t322) - t125 * (t380 + t120)
+            - minus_s_foot_along_y * t317 + t220 * t517 - t325 * t515;
+        let t534 = minus_s_left_bar_along_z * t259;
+        let t536 = c_left_bar_along_z * t285;
+        let t552 = t22 * (minus_rate_dot_left_bar_along_z - t336) - t151 * (t399 + t159)
+            - minus_s_foot_along_z * t341 + t239 * t534 - t349 * t536;
+        let t556 = t241 + 0.31 * t357 - 0.31 * t355;
+        let t559 = minus_rate_foot_along_x * t98;
+        let t568 = minus_rate_foot_along_y * t132;
+        let t573 = t251 + 0.31 * t376 - 0.31 * t374;
+        let t586 = t259 + 0.31 * t395 - 0.31 * t393;
+        let t588 = minus_rate_foot_along_z * t163;
         Ok([
             [
-                t74 * acceleration[0] - t76 * acceleration[1] - t79 * t134, rate_dot_drive_along_x,
+                t51 * acceleration[0] - t53 * acceleration[1] - t56 * t57, rate_dot_drive_along_x,
                 0.0, 0.0, 0.0, rate_drive_along_x, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_x), 0.0, 0.0, 1.0, 0.0,
-                -(t251 * minus_rate_dot_foot_along_x), t266 * minus_rate_dot_foot_along_y,
-                -(t281 * minus_rate_dot_foot_along_z), t251 * t294 - t298, -(t266 * t304),
-                t281 * t312,
-                c_foot_along_x * minus_rate_dot_foot_along_x - minus_s_foot_along_x * t93
-                    - t251 * t114,
-                t266 * t329,
-                -(t281 * t337),
-                -(t251 * t351 + t353 * t120),
-                t266 * t372 - t374 * t375,
-                t386 * t389 - t281 * t397,
-                t251 * t414 - t353 * t418,
-                -(t266 * t433 + t374 * t438),
-                t281 * t453 + t386 * t458,
-                t251 * t470 - t353 * t345,
-                -(t266 * t486 + t374 * t364),
-                t281 * t502 + t386 * t391,
-                t353 * t410 - t251 * t513,
-                t266 * t522 + t374 * t429,
-                -(t281 * t532 + t386 * t449),
-                t353 * minus_rate_dot_left_bar_along_x,
-                t374 * minus_rate_dot_left_bar_along_y,
-                -(t386 * minus_rate_dot_left_bar_along_z),
-                t562,
-                t374 * t569 - t266 * t571,
-                t281 * t588 - t386 * t590,
-                t251 * t610 - t298 + t353 * t108,
-                t374 * t169 - t266 * t625,
-                t281 * t638 - t386 * t219,
+                -(t198 * minus_rate_dot_foot_along_x), t213 * minus_rate_dot_foot_along_y,
+                -(t228 * minus_rate_dot_foot_along_z), t198 * t241 - t245, -(t213 * t251),
+                t228 * t259,
+                c_foot_along_x * minus_rate_dot_foot_along_x
+                    - minus_s_foot_along_x * t103 - t198 * t270,
+                t213 * t277,
+                -(t228 * t285),
+                -(t198 * t298 + t300 * t302),
+                t213 * t318 - t320 * t322,
+                t333 * t336 - t228 * t342,
+                t198 * t359 - t300 * t363,
+                -(t213 * t378 + t320 * t382),
+                t228 * t397 + t333 * t401,
+                t198 * t415 - t300 * t295,
+                -(t213 * t430 + t320 * t315),
+                t228 * t445 + t333 * t339,
+                t300 * t355 - t198 * t456,
+                t213 * t465 + t320 * t374,
+                -(t228 * t475 + t333 * t393),
+                t300 * minus_rate_dot_left_bar_along_x,
+                t320 * minus_rate_dot_left_bar_along_y,
+                -(t333 * minus_rate_dot_left_bar_along_z),
+                t508,
+                t320 * t515 - t213 * t517,
+                t228 * t534 - t333 * t536,
+                t198 * t556 - t245 + t300 * t559,
+                t320 * t568 - t213 * t573,
+                t228 * t586 - t333 * t588,
             ],
             [
-                t139 * acceleration[1] - t143 * acceleration[0] + t148 * t134, 0.0,
+                t62 * acceleration[1] - t66 * acceleration[0] + t71 * t57, 0.0,
                 rate_dot_drive_along_y, 0.0, 0.0, 0.0, rate_drive_along_y, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_y), 0.0, 0.0, 1.0,
-                -(t258 * minus_rate_dot_foot_along_x), -(t273 * minus_rate_dot_foot_along_y),
-                -(t288 * minus_rate_dot_foot_along_z), t258 * t294, t273 * t304 - t309, t288 * t312,
-                -(t258 * t114),
+                -(t205 * minus_rate_dot_foot_along_x), -(t220 * minus_rate_dot_foot_along_y),
+                -(t235 * minus_rate_dot_foot_along_z), t205 * t241, t220 * t251 - t256, t235 * t259,
+                -(t205 * t270),
                 c_foot_along_y * minus_rate_dot_foot_along_y
-                    - minus_s_foot_along_y * t170 - t273 * t329,
-                -(t288 * t337),
-                t356 * t120 - t258 * t351,
-                t378 * t375 - t273 * t372,
-                -(t288 * t397 + t401 * t389),
-                t258 * t414 + t356 * t418,
-                t273 * t433 + t378 * t438,
-                t288 * t453 - t401 * t458,
-                t258 * t470 + t356 * t345,
-                t273 * t486 + t378 * t364,
-                t288 * t502 - t401 * t391,
-                -(t258 * t513 + t356 * t410),
-                -(t273 * t522 + t378 * t429),
-                t401 * t449 - t288 * t532,
-                -(t356 * minus_rate_dot_left_bar_along_x),
-                -(t378 * minus_rate_dot_left_bar_along_y),
-                t401 * minus_rate_dot_left_bar_along_z,
-                t258 * t558 - t356 * t128,
-                t584,
-                t288 * t588 + t401 * t590,
-                t258 * t610 - t356 * t108,
-                t273 * t625 - t309 - t378 * t169,
-                t288 * t638 + t401 * t219,
+                    - minus_s_foot_along_y * t137 - t220 * t277,
+                -(t235 * t285),
+                t305 * t302 - t205 * t298,
+                t325 * t322 - t220 * t318,
+                -(t235 * t342 + t346 * t336),
+                t205 * t359 + t305 * t363,
+                t220 * t378 + t325 * t382,
+                t235 * t397 - t346 * t401,
+                t205 * t415 + t305 * t295,
+                t220 * t430 + t325 * t315,
+                t235 * t445 - t346 * t339,
+                -(t205 * t456 + t305 * t355),
+                -(t220 * t465 + t325 * t374),
+                t346 * t393 - t235 * t475,
+                -(t305 * minus_rate_dot_left_bar_along_x),
+                -(t325 * minus_rate_dot_left_bar_along_y),
+                t346 * minus_rate_dot_left_bar_along_z,
+                t205 * t501 - t305 * t506,
+                t530,
+                t235 * t534 + t346 * t536,
+                t205 * t556 - t305 * t559,
+                t220 * t573 - t256 - t325 * t568,
+                t235 * t586 + t346 * t588,
             ],
             [
-                t153 * acceleration[0] - t157 * acceleration[1] - t162 * t134, 0.0, 0.0, t233,
+                t76 * acceleration[0] - t80 * acceleration[1] - t85 * t57, 0.0, 0.0, t180,
                 rate_dot_drive_along_z, 0.0, 0.0, rate_drive_along_z, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_z), 0.0, 0.0,
-                -(t262 * minus_rate_dot_foot_along_x), t277 * minus_rate_dot_foot_along_y,
-                -(t292 * minus_rate_dot_foot_along_z), t262 * t294, -(t277 * t304),
-                t292 * t312 - t318, -(t262 * t114), t277 * t329,
+                -(t209 * minus_rate_dot_foot_along_x), t224 * minus_rate_dot_foot_along_y,
+                -(t239 * minus_rate_dot_foot_along_z), t209 * t241, -(t224 * t251),
+                t239 * t259 - t265, -(t209 * t270), t224 * t277,
                 c_foot_along_z * minus_rate_dot_foot_along_z
-                    - minus_s_foot_along_z * t206 - t292 * t337,
-                -(t262 * t351 + t361 * t120),
-                t277 * t372 - t383 * t375,
-                t404 * t389 - t292 * t397,
-                t262 * t414 - t361 * t418,
-                -(t277 * t433 + t383 * t438),
-                t292 * t453 + t404 * t458,
-                t262 * t470 - t361 * t345,
-                -(t277 * t486 + t383 * t364),
-                t292 * t502 + t404 * t391,
-                t361 * t410 - t262 * t513,
-                t277 * t522 + t383 * t429,
-                -(t292 * t532 + t404 * t449),
-                t361 * minus_rate_dot_left_bar_along_x,
-                t383 * minus_rate_dot_left_bar_along_y,
-                -(t404 * minus_rate_dot_left_bar_along_z),
-                t262 * t558 + t361 * t128,
-                t383 * t569 - t277 * t571,
-                t606,
-                t262 * t610 + t361 * t108,
-                t383 * t169 - t277 * t625,
-                t292 * t638 - t318 - t404 * t219,
+                    - minus_s_foot_along_z * t157 - t239 * t285,
+                -(t209 * t298 + t310 * t302),
+                t224 * t318 - t330 * t322,
+                t349 * t336 - t239 * t342,
+                t209 * t359 - t310 * t363,
+                -(t224 * t378 + t330 * t382),
+                t239 * t397 + t349 * t401,
+                t209 * t415 - t310 * t295,
+                -(t224 * t430 + t330 * t315),
+                t239 * t445 + t349 * t339,
+                t310 * t355 - t209 * t456,
+                t224 * t465 + t330 * t374,
+                -(t239 * t475 + t349 * t393),
+                t310 * minus_rate_dot_left_bar_along_x,
+                t330 * minus_rate_dot_left_bar_along_y,
+                -(t349 * minus_rate_dot_left_bar_along_z),
+                t209 * t501 + t310 * t506,
+                t330 * t515 - t224 * t517,
+                t552,
+                t209 * t556 + t310 * t559,
+                t330 * t568 - t224 * t573,
+                t239 * t586 - t265 - t349 * t588,
             ],
         ])
     }
@@ -5369,7 +4915,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 628 operations (206 additions, 415 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 540 intermediates.
+    /// 580 operations (193 additions, 380 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 492 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5388,331 +4934,315 @@ impl Orthoglide {
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = minus_c_foot_along_y * c_left_bar_along_y;
         let t5 = s_foot_along_y * c_left_bar_along_y;
         ::overact::guard::leg(t5, 1.0, "along_y")?;
         let t6 = 1.0 / t5;
-        let minus_gdrive_vz_along_y = t4 * t6;
-        let t12 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t13 = 0.31 * t12;
-        let t14 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t14, 1.0, "along_z")?;
-        let t15 = 1.0 / t14;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t15;
-        let t18 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t18);
-        let t22 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t13 * minus_gfoot_vy_along_z + t22 * t18;
-        let t26 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let t32 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t32, 1.0, "along_x")?;
-        let t33 = 1.0 / t32;
-        let minus_gdrive_vy_along_x = t31 * t33;
-        let t35 = 0.31 * t4;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t6;
-        let t38 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t38);
-        let t42 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t35 * minus_gfoot_vx_along_y + t42 * t38;
-        let minus_gdrive_vx_along_z = t12 * t15;
-        let t47 = minus_gdrive_vx_along_y
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t6;
+        let t12 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t12, 1.0, "along_z")?;
+        let t13 = 1.0 / t12;
+        let minus_gdrive_vy_along_z = t13 * s_left_bar_along_z;
+        let t16 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
+        let t22 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t22, 1.0, "along_x")?;
+        let t23 = 1.0 / t22;
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x * t23;
+        let minus_gdrive_vx_along_y = t6 * s_left_bar_along_y;
+        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z * t13;
+        let t29 = minus_gdrive_vx_along_y
             + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
-        let t50 = 0.31 * t31;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t33;
-        let t53 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t53);
-        let t57 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t50 * minus_gfoot_vz_along_x + t57 * t53;
-        let t61 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
+        let minus_gdrive_vz_along_x = t23 * s_left_bar_along_x;
+        let t34 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
             + minus_gdrive_vx_along_z;
-        let t63 = t26 - minus_gdrive_vy_along_x * t47 - minus_gdrive_vz_along_x * t61;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t63, 1.0, "kept actuators")?;
-        let t64 = 1.0 / t63;
-        let t65 = t26 * t64;
-        let t67 = t47 * t64;
-        let t70 = t61 * t64;
-        let t71 = 0.31 * s_left_bar_along_x;
+        let t36 = t16 - minus_gdrive_vy_along_x * t29 - minus_gdrive_vz_along_x * t34;
+        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t36, 1.0, "kept actuators")?;
+        let t37 = 1.0 / t36;
+        let t38 = t16 * t37;
+        let t40 = t29 * t37;
+        let t43 = t34 * t37;
+        let t44 = -9.81 - acceleration[2];
+        let t49 = (minus_gdrive_vy_along_x
+            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t37;
+        let t53 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t37;
+        let t58 = (minus_gdrive_vy_along_z
+            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t37;
+        let t63 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
+            + minus_gdrive_vz_along_x) * t37;
+        let t67 = (minus_gdrive_vz_along_y
+            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t37;
+        let t72 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t37;
+        let t75 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t75;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t79 = 0.31 * s_left_bar_along_x;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t23;
+        let t82 = s_foot_along_x * s_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (minus_gdrive_vy_along_x * (t82 * t75));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t53;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t77 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t79 = t71 * (minus_rate_foot_along_x * t77);
-        let t82 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t84 = t77 * t77 + t82 * t82;
-        let t85 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t86 = t84 + t85;
-        let t93 = t71 * (minus_rate_foot_along_x * t82);
-        let t96 = acceleration[1] - (t50 * t86 + t93 + t93);
-        let t100 = t71 * minus_rate_foot_along_x;
-        let t101 = minus_rate_foot_along_x * t100;
-        let t103 = acceleration[2] - (t71 * t86 - t101);
-        let rate_dot_drive_along_x = acceleration[0] - (t79 - 0.31 * t32 * t86 + t79)
-            - minus_gdrive_vy_along_x * t96 - minus_gdrive_vz_along_x * t103;
-        let t106 = s_foot_along_x * rate_dot_drive_along_x;
-        let t109 = c_left_bar_along_x * t106 - 9.81 * s_left_bar_along_x;
-        let t110 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t111 = t110 * t110;
-        let t116 = 3.225806451612903 * t100;
-        let t117 = t116 * t110;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t103;
-        let t119 = t117 - minus_rate_dot_left_bar_along_x;
-        let t126 = s_left_bar_along_x * (t109 - 0.31 * (t111 + t84))
-            + c_left_bar_along_x
-                * (0.31 * t119
-                    - (s_left_bar_along_x * t106 + 9.81 * c_left_bar_along_x));
-        let t131 = (minus_gdrive_vy_along_x
-            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t64;
-        let t135 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t64;
-        let t140 = (minus_gdrive_vy_along_z
-            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t64;
-        let t145 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x) * t64;
-        let t149 = (minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t64;
-        let t154 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t64;
-        let t157 = 0.31 * s_left_bar_along_y;
+        let t88 = t79 * minus_rate_foot_along_x;
+        let t89 = s_foot_along_x * minus_rate_left_bar_along_x * t88;
+        let t90 = minus_gdrive_vy_along_x * t89;
+        let t92 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t93 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t95 = 0.31 * t22 * (t92 + t93);
+        let t102 = acceleration[1] - (minus_gdrive_vy_along_x * t95 + t89 + t89);
+        let t106 = acceleration[2] - t79 * t92;
+        let rate_dot_drive_along_x = acceleration[0] - (t90 - t95 + t90)
+            - minus_gdrive_vy_along_x * t102 - minus_gdrive_vz_along_x * t106;
+        let t109 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t109;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t113 = 0.31 * s_left_bar_along_y;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t6;
+        let t115 = s_foot_along_y * s_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (minus_gdrive_vz_along_y * (t115 * t109));
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t38;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t163 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t165 = t157 * (minus_rate_foot_along_y * t163);
-        let t167 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t170 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t172 = t167 + t163 * t163 + t170 * t170;
-        let t178 = t157 * minus_rate_foot_along_y;
-        let t179 = minus_rate_foot_along_y * t178;
-        let t181 = acceleration[0] - (t157 * t172 - t179);
-        let t186 = t157 * (minus_rate_foot_along_y * t170);
-        let t189 = acceleration[2] - (t35 * t172 + t186 + t186);
-        let rate_dot_drive_along_y = acceleration[1] - (t165 - 0.31 * t5 * t172 + t165)
-            - minus_gdrive_vx_along_y * t181 - minus_gdrive_vz_along_y * t189;
-        let t192 = 0.31 * s_left_bar_along_z;
+        let t122 = t113 * minus_rate_foot_along_y;
+        let t123 = s_foot_along_y * minus_rate_left_bar_along_y * t122;
+        let t124 = minus_gdrive_vz_along_y * t123;
+        let t126 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t127 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t129 = 0.31 * t5 * (t126 + t127);
+        let t134 = acceleration[0] - t113 * t127;
+        let t140 = acceleration[2] - (minus_gdrive_vz_along_y * t129 + t123 + t123);
+        let rate_dot_drive_along_y = acceleration[1] - (t124 - t129 + t124)
+            - minus_gdrive_vx_along_y * t134 - minus_gdrive_vz_along_y * t140;
+        let t143 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t143;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t146 = s_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t13;
+        let t150 = s_foot_along_z * s_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (t150 * t143 * minus_gdrive_vx_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t18;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t198 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t200 = t192 * (minus_rate_foot_along_z * t198);
-        let t202 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t204 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t207 = t202 * t202 + t204 + t198 * t198;
-        let t214 = t192 * (minus_rate_foot_along_z * t202);
-        let t217 = acceleration[0] - (t13 * t207 + t214 + t214);
-        let t220 = t192 * minus_rate_foot_along_z;
-        let t221 = minus_rate_foot_along_z * t220;
-        let t223 = acceleration[1] - (t192 * t207 - t221);
-        let rate_dot_drive_along_z = acceleration[2] - (t200 - 0.31 * t14 * t207 + t200)
-            - (minus_gdrive_vx_along_z * t217 + minus_gdrive_vy_along_z * t223);
-        let t227 = 9.81 + rate_dot_drive_along_z;
+        let t156 = 0.31 * s_left_bar_along_z * minus_rate_foot_along_z;
+        let t157 = t146 * t156;
+        let t158 = minus_gdrive_vx_along_z * t157;
+        let t160 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t161 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t163 = 0.31 * t12 * (t160 + t161);
+        let t170 = acceleration[0] - (minus_gdrive_vx_along_z * t163 + t157 + t157);
+        let t172 = minus_gdrive_vy_along_z * twist[1];
+        let t174 = acceleration[1] - t146 * t172;
+        let rate_dot_drive_along_z = acceleration[2] - (t158 - t163 + t158)
+            - (minus_gdrive_vx_along_z * t170 + minus_gdrive_vy_along_z * t174);
+        let t178 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let rate_drive_along_z = twist[2]
-            - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let t245 = minus_gfoot_vy_along_x * t67 + minus_gfoot_vz_along_x * t70;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t96
-            + minus_gfoot_vz_along_x * t103;
-        let t252 = minus_gfoot_vy_along_x * t135 + minus_gfoot_vz_along_x * t140;
-        let t256 = minus_gfoot_vy_along_x * t149 + minus_gfoot_vz_along_x * t154;
-        let t260 = minus_gfoot_vx_along_y * t65 + minus_gfoot_vz_along_y * t70;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t181
-            + minus_gfoot_vz_along_y * t189;
-        let t267 = minus_gfoot_vx_along_y * t131 + minus_gfoot_vz_along_y * t140;
-        let t271 = minus_gfoot_vx_along_y * t145 + minus_gfoot_vz_along_y * t154;
-        let t275 = minus_gfoot_vx_along_z * t65 + minus_gfoot_vy_along_z * t67;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t217
-            + minus_gfoot_vy_along_z * t223;
-        let t282 = minus_gfoot_vx_along_z * t131 + minus_gfoot_vy_along_z * t135;
-        let t286 = minus_gfoot_vx_along_z * t145 + minus_gfoot_vy_along_z * t149;
-        let t290 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t85;
-        let t291 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t298 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t302 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t167;
-        let t306 = minus_c_foot_along_z * t227;
-        let t311 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t204;
-        let t323 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t331 = s_foot_along_z * t227;
-        let t339 = minus_gleft_bar_vz_along_x * t70;
-        let t341 = minus_rate_left_bar_along_x * t110;
-        let t342 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t343 = t341 - t342;
-        let t345 = minus_rate_left_bar_along_x * t116;
-        let t347 = s_left_bar_along_x * t343 + c_left_bar_along_x * t345;
-        let t350 = minus_gleft_bar_vz_along_x * t140;
-        let t354 = minus_gleft_bar_vz_along_x * t154;
-        let t358 = minus_gleft_bar_vx_along_y * t65;
-        let t359 = 3.225806451612903 * t178;
-        let t360 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t361 = t359 * t360;
-        let t363 = minus_rate_left_bar_along_y * t360;
-        let t364 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t365 = t363 - t364;
-        let t367 = minus_rate_left_bar_along_y * t359;
-        let t369 = s_left_bar_along_y * t365 + c_left_bar_along_y * t367;
-        let t372 = minus_gleft_bar_vx_along_y * t131;
-        let t376 = minus_gleft_bar_vx_along_y * t145;
-        let t380 = minus_gleft_bar_vy_along_z * t67;
-        let t381 = 3.225806451612903 * t220;
-        let t382 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t383 = t381 * t382;
-        let t385 = minus_rate_left_bar_along_z * t382;
-        let t386 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t387 = t385 - t386;
-        let t389 = minus_rate_left_bar_along_z * t381;
-        let t391 = s_left_bar_along_z * t387 + c_left_bar_along_z * t389;
-        let t394 = minus_gleft_bar_vy_along_z * t135;
-        let t398 = minus_gleft_bar_vy_along_z * t149;
-        let t402 = t341 + t343;
-        let t404 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t406 = t345 + t404 + t345;
-        let t408 = c_left_bar_along_x * t402 - s_left_bar_along_x * t406;
-        let t411 = 10.40582726326743 * (t100 * t100);
-        let t412 = t411 - t111;
-        let t421 = t363 + t365;
-        let t423 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t425 = t367 + t423 + t367;
-        let t427 = c_left_bar_along_y * t421 - s_left_bar_along_y * t425;
-        let t430 = 10.40582726326743 * (t178 * t178);
-        let t432 = t430 - t360 * t360;
-        let t441 = t385 + t387;
-        let t443 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t445 = t389 + t443 + t389;
-        let t447 = c_left_bar_along_z * t441 - s_left_bar_along_z * t445;
-        let t450 = 10.40582726326743 * (t220 * t220);
-        let t452 = t450 - t382 * t382;
-        let t465 = s_left_bar_along_x * t119 + c_left_bar_along_x * (t84 - t411);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t181;
-        let t478 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t481 = s_left_bar_along_y * (t361 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t478 - t430);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t223;
-        let t494 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t497 = s_left_bar_along_z * (t383 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t494 - t450);
-        let t506 = 3.225806451612903 * acceleration[2];
-        let t516 = 3.225806451612903 * acceleration[0];
-        let t526 = 3.225806451612903 * acceleration[1];
-        let t552 = s_left_bar_along_x * t291;
-        let t556 = t32 * (t117 + minus_rate_dot_left_bar_along_x) + t57 * (t411 + t84)
-            + minus_c_foot_along_x * t402 - t245 * t552 + t339 * t109;
-        let t563 = c_left_bar_along_y * t323;
-        let t565 = s_left_bar_along_y * t298;
-        let t578 = t5 * (t361 + minus_rate_dot_left_bar_along_y) + t42 * (t430 + t478)
-            + minus_c_foot_along_y * t421 - t267 * t565 + t372 * t563;
-        let t582 = c_left_bar_along_z * t331;
-        let t584 = s_left_bar_along_z * t306;
-        let t600 = t14 * (t383 + minus_rate_dot_left_bar_along_z) + t22 * (t450 + t494)
-            + minus_c_foot_along_z * t441 - t286 * t584 + t398 * t582;
-        let t604 = 0.31 * t404 + t291 + 0.31 * t406;
-        let t618 = 0.31 * t423 + t298 + 0.31 * t425;
-        let t632 = 0.31 * t443 + t306 + 0.31 * t445;
+        let rate_drive_along_z = twist[2] - (minus_gdrive_vx_along_z * twist[0] + t172);
+        let t195 = minus_gfoot_vy_along_x * t40 + minus_gfoot_vz_along_x * t43;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t102
+            + minus_gfoot_vz_along_x * t106;
+        let t202 = minus_gfoot_vy_along_x * t53 + minus_gfoot_vz_along_x * t58;
+        let t206 = minus_gfoot_vy_along_x * t67 + minus_gfoot_vz_along_x * t72;
+        let t210 = minus_gfoot_vx_along_y * t38 + minus_gfoot_vz_along_y * t43;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t134
+            + minus_gfoot_vz_along_y * t140;
+        let t217 = minus_gfoot_vx_along_y * t49 + minus_gfoot_vz_along_y * t58;
+        let t221 = minus_gfoot_vx_along_y * t63 + minus_gfoot_vz_along_y * t72;
+        let t225 = minus_gfoot_vx_along_z * t38 + minus_gfoot_vy_along_z * t40;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t170
+            + minus_gfoot_vy_along_z * t174;
+        let t232 = minus_gfoot_vx_along_z * t49 + minus_gfoot_vy_along_z * t53;
+        let t236 = minus_gfoot_vx_along_z * t63 + minus_gfoot_vy_along_z * t67;
+        let t240 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t93;
+        let t241 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t248 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
+        let t252 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t126;
+        let t256 = minus_c_foot_along_z * t178;
+        let t261 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t160;
+        let t267 = s_foot_along_x * rate_dot_drive_along_x;
+        let t274 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t282 = s_foot_along_z * t178;
+        let t290 = minus_gleft_bar_vz_along_x * t43;
+        let t291 = 3.225806451612903 * t88;
+        let t292 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t293 = t291 * t292;
+        let t295 = minus_rate_left_bar_along_x * t292;
+        let t296 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t298 = t295 + t295 - t296;
+        let t299 = s_left_bar_along_x * t298;
+        let t302 = minus_gleft_bar_vz_along_x * t58;
+        let t306 = minus_gleft_bar_vz_along_x * t72;
+        let t310 = minus_gleft_bar_vx_along_y * t38;
+        let t311 = 3.225806451612903 * t122;
+        let t312 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t313 = t311 * t312;
+        let t315 = minus_rate_left_bar_along_y * t312;
+        let t316 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t318 = t315 + t315 - t316;
+        let t319 = s_left_bar_along_y * t318;
+        let t322 = minus_gleft_bar_vx_along_y * t49;
+        let t326 = minus_gleft_bar_vx_along_y * t63;
+        let t330 = minus_gleft_bar_vy_along_z * t40;
+        let t331 = 3.225806451612903 * t156;
+        let t332 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t333 = t331 * t332;
+        let t335 = minus_rate_left_bar_along_z * t332;
+        let t336 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t338 = t335 + t335 - t336;
+        let t339 = s_left_bar_along_z * t338;
+        let t342 = minus_gleft_bar_vy_along_z * t53;
+        let t346 = minus_gleft_bar_vy_along_z * t67;
+        let t351 = minus_rate_left_bar_along_x * t291;
+        let t352 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t354 = t351 + t352 + t351;
+        let t356 = c_left_bar_along_x * t298 - s_left_bar_along_x * t354;
+        let t358 = t292 * t292;
+        let t359 = t93 - t358;
+        let t360 = t359 - t358;
+        let t370 = minus_rate_left_bar_along_y * t311;
+        let t371 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t373 = t370 + t371 + t370;
+        let t375 = c_left_bar_along_y * t318 - s_left_bar_along_y * t373;
+        let t377 = t312 * t312;
+        let t378 = t126 - t377;
+        let t379 = t378 - t377;
+        let t389 = minus_rate_left_bar_along_z * t331;
+        let t390 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t392 = t389 + t390 + t389;
+        let t394 = c_left_bar_along_z * t338 - s_left_bar_along_z * t392;
+        let t396 = t332 * t332;
+        let t397 = t160 - t396;
+        let t398 = t397 - t396;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t106;
+        let t413 = s_left_bar_along_x * (t293 - minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t92 - t359);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t134;
+        let t428 = s_left_bar_along_y * (t313 - minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t127 - t378);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t174;
+        let t443 = s_left_bar_along_z * (t333 - minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t161 - t397);
+        let t452 = 3.225806451612903 * acceleration[2];
+        let t462 = 3.225806451612903 * acceleration[0];
+        let t472 = 3.225806451612903 * acceleration[1];
+        let t498 = s_left_bar_along_x * t241;
+        let t503 = c_left_bar_along_x * t267 - 9.81 * s_left_bar_along_x;
+        let t505 = t22 * (t293 + minus_rate_dot_left_bar_along_x) + t82 * (t359 + t92)
+            + minus_c_foot_along_x * t298 - t195 * t498 + t290 * t503;
+        let t512 = c_left_bar_along_y * t274;
+        let t514 = s_left_bar_along_y * t248;
+        let t527 = t5 * (t313 + minus_rate_dot_left_bar_along_y) + t115 * (t378 + t127)
+            + minus_c_foot_along_y * t318 - t217 * t514 + t322 * t512;
+        let t531 = c_left_bar_along_z * t282;
+        let t533 = s_left_bar_along_z * t256;
+        let t549 = t12 * (t333 + minus_rate_dot_left_bar_along_z) + t150 * (t397 + t161)
+            + minus_c_foot_along_z * t338 - t236 * t533 + t346 * t531;
+        let t553 = 0.31 * t352 + t241 + 0.31 * t354;
+        let t556 = minus_rate_foot_along_x * t88;
+        let t568 = 0.31 * t371 + t248 + 0.31 * t373;
+        let t570 = minus_rate_foot_along_y * t122;
+        let t583 = 0.31 * t390 + t256 + 0.31 * t392;
+        let t585 = minus_rate_foot_along_z * t156;
         Ok([
             [
-                t65 * acceleration[0] + t67 * acceleration[1] - t70 * t126, rate_dot_drive_along_x,
+                t38 * acceleration[0] + t40 * acceleration[1] - t43 * t44, rate_dot_drive_along_x,
                 0.0, 0.0, 0.0, rate_drive_along_x, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_x), 0.0, 0.0, 1.0, 0.0,
-                t245 * minus_rate_dot_foot_along_x, t260 * minus_rate_dot_foot_along_y,
-                t275 * minus_rate_dot_foot_along_z, t290 + t245 * t291, t260 * t298, t275 * t306,
-                s_foot_along_x * minus_rate_dot_foot_along_x + minus_c_foot_along_x * t85
-                    + t245 * t106,
-                t260 * t323,
-                t275 * t331,
-                t339 * t117 - t245 * t347,
-                t358 * t361 - t260 * t369,
-                t380 * t383 - t275 * t391,
-                -(t245 * t408 + t339 * t412),
-                -(t260 * t427 + t358 * t432),
-                -(t275 * t447 + t380 * t452),
-                t339 * t342 - t245 * t465,
-                t358 * t364 - t260 * t481,
-                t380 * t386 - t275 * t497,
-                t245 * t506 + t339 * t404,
-                t260 * t516 + t358 * t423,
-                t275 * t526 + t380 * t443,
-                t339 * minus_rate_dot_left_bar_along_x,
-                t358 * minus_rate_dot_left_bar_along_y,
-                t380 * minus_rate_dot_left_bar_along_z,
-                t556,
-                t358 * t563 - t260 * t565,
-                t380 * t582 - t275 * t584,
-                t290 + t245 * t604 - t339 * t101,
-                t260 * t618 - t358 * t179,
-                t275 * t632 - t380 * t221,
+                t195 * minus_rate_dot_foot_along_x, t210 * minus_rate_dot_foot_along_y,
+                t225 * minus_rate_dot_foot_along_z, t240 + t195 * t241, t210 * t248, t225 * t256,
+                s_foot_along_x * minus_rate_dot_foot_along_x + minus_c_foot_along_x * t93
+                    + t195 * t267,
+                t210 * t274,
+                t225 * t282,
+                t290 * t293 - t195 * t299,
+                t310 * t313 - t210 * t319,
+                t330 * t333 - t225 * t339,
+                -(t195 * t356 + t290 * t360),
+                -(t210 * t375 + t310 * t379),
+                -(t225 * t394 + t330 * t398),
+                t290 * t296 - t195 * t413,
+                t310 * t316 - t210 * t428,
+                t330 * t336 - t225 * t443,
+                t195 * t452 + t290 * t352,
+                t210 * t462 + t310 * t371,
+                t225 * t472 + t330 * t390,
+                t290 * minus_rate_dot_left_bar_along_x,
+                t310 * minus_rate_dot_left_bar_along_y,
+                t330 * minus_rate_dot_left_bar_along_z,
+                t505,
+                t310 * t512 - t210 * t514,
+                t330 * t531 - t225 * t533,
+                t240 + t195 * t553 - t290 * t556,
+                t210 * t568 - t310 * t570,
+                t225 * t583 - t330 * t585,
             ],
             [
-                t131 * acceleration[0] + t135 * acceleration[1] - t140 * t126, 0.0,
+                t49 * acceleration[0] + t53 * acceleration[1] - t58 * t44, 0.0,
                 rate_dot_drive_along_y, 0.0, 0.0, 0.0, rate_drive_along_y, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_y), 0.0, 0.0, 1.0,
-                t252 * minus_rate_dot_foot_along_x, t267 * minus_rate_dot_foot_along_y,
-                t282 * minus_rate_dot_foot_along_z, t252 * t291, t302 + t267 * t298, t282 * t306,
-                t252 * t106,
+                t202 * minus_rate_dot_foot_along_x, t217 * minus_rate_dot_foot_along_y,
+                t232 * minus_rate_dot_foot_along_z, t202 * t241, t252 + t217 * t248, t232 * t256,
+                t202 * t267,
                 s_foot_along_y * minus_rate_dot_foot_along_y
-                    + minus_c_foot_along_y * t167 + t267 * t323,
-                t282 * t331,
-                t350 * t117 - t252 * t347,
-                t372 * t361 - t267 * t369,
-                t394 * t383 - t282 * t391,
-                -(t252 * t408 + t350 * t412),
-                -(t267 * t427 + t372 * t432),
-                -(t282 * t447 + t394 * t452),
-                t350 * t342 - t252 * t465,
-                t372 * t364 - t267 * t481,
-                t394 * t386 - t282 * t497,
-                t252 * t506 + t350 * t404,
-                t267 * t516 + t372 * t423,
-                t282 * t526 + t394 * t443,
-                t350 * minus_rate_dot_left_bar_along_x,
-                t372 * minus_rate_dot_left_bar_along_y,
-                t394 * minus_rate_dot_left_bar_along_z,
-                t350 * t109 - t252 * t552,
-                t578,
-                t394 * t582 - t282 * t584,
-                t252 * t604 - t350 * t101,
-                t302 + t267 * t618 - t372 * t179,
-                t282 * t632 - t394 * t221,
+                    + minus_c_foot_along_y * t126 + t217 * t274,
+                t232 * t282,
+                t302 * t293 - t202 * t299,
+                t322 * t313 - t217 * t319,
+                t342 * t333 - t232 * t339,
+                -(t202 * t356 + t302 * t360),
+                -(t217 * t375 + t322 * t379),
+                -(t232 * t394 + t342 * t398),
+                t302 * t296 - t202 * t413,
+                t322 * t316 - t217 * t428,
+                t342 * t336 - t232 * t443,
+                t202 * t452 + t302 * t352,
+                t217 * t462 + t322 * t371,
+                t232 * t472 + t342 * t390,
+                t302 * minus_rate_dot_left_bar_along_x,
+                t322 * minus_rate_dot_left_bar_along_y,
+                t342 * minus_rate_dot_left_bar_along_z,
+                t302 * t503 - t202 * t498,
+                t527,
+                t342 * t531 - t232 * t533,
+                t202 * t553 - t302 * t556,
+                t252 + t217 * t568 - t322 * t570,
+                t232 * t583 - t342 * t585,
             ],
             [
-                t145 * acceleration[0] + t149 * acceleration[1] - t154 * t126, 0.0, 0.0, t227,
+                t63 * acceleration[0] + t67 * acceleration[1] - t72 * t44, 0.0, 0.0, t178,
                 rate_dot_drive_along_z, 0.0, 0.0, rate_drive_along_z, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_z), 0.0, 0.0,
-                t256 * minus_rate_dot_foot_along_x, t271 * minus_rate_dot_foot_along_y,
-                t286 * minus_rate_dot_foot_along_z, t256 * t291, t271 * t298, t311 + t286 * t306,
-                t256 * t106, t271 * t323,
+                t206 * minus_rate_dot_foot_along_x, t221 * minus_rate_dot_foot_along_y,
+                t236 * minus_rate_dot_foot_along_z, t206 * t241, t221 * t248, t261 + t236 * t256,
+                t206 * t267, t221 * t274,
                 s_foot_along_z * minus_rate_dot_foot_along_z
-                    + minus_c_foot_along_z * t204 + t286 * t331,
-                t354 * t117 - t256 * t347,
-                t376 * t361 - t271 * t369,
-                t398 * t383 - t286 * t391,
-                -(t256 * t408 + t354 * t412),
-                -(t271 * t427 + t376 * t432),
-                -(t286 * t447 + t398 * t452),
-                t354 * t342 - t256 * t465,
-                t376 * t364 - t271 * t481,
-                t398 * t386 - t286 * t497,
-                t256 * t506 + t354 * t404,
-                t271 * t516 + t376 * t423,
-                t286 * t526 + t398 * t443,
-                t354 * minus_rate_dot_left_bar_along_x,
-                t376 * minus_rate_dot_left_bar_along_y,
-                t398 * minus_rate_dot_left_bar_along_z,
-                t354 * t109 - t256 * t552,
-                t376 * t563 - t271 * t565,
-                t600,
-                t256 * t604 - t354 * t101,
-                t271 * t618 - t376 * t179,
-                t311 + t286 * t632 - t398 * t221,
+                    + minus_c_foot_along_z * t160 + t236 * t282,
+                t306 * t293 - t206 * t299,
+                t326 * t313 - t221 * t319,
+                t346 * t333 - t236 * t339,
+                -(t206 * t356 + t306 * t360),
+                -(t221 * t375 + t326 * t379),
+                -(t236 * t394 + t346 * t398),
+                t306 * t296 - t206 * t413,
+                t326 * t316 - t221 * t428,
+                t346 * t336 - t236 * t443,
+                t206 * t452 + t306 * t352,
+                t221 * t462 + t326 * t371,
+                t236 * t472 + t346 * t390,
+                t306 * minus_rate_dot_left_bar_along_x,
+                t326 * minus_rate_dot_left_bar_along_y,
+                t346 * minus_rate_dot_left_bar_along_z,
+                t306 * t503 - t206 * t498,
+                t326 * t512 - t221 * t514,
+                t549,
+                t206 * t553 - t306 * t556,
+                t221 * t568 - t326 * t570,
+                t261 + t236 * t583 - t346 * t585,
             ],
         ])
     }
@@ -5727,7 +5257,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 717 operations (245 additions, 459 multiplications, 13 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 629 intermediates.
+    /// 656 operations (227 additions, 419 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 568 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5738,384 +5268,368 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t2, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t7, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t9, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t14 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t14, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t14);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t19 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t19, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t19);
-        let t21 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t21, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t25 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t25);
-        let t29 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t29 * t25;
-        let t33 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t36 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t36, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t36);
+        let t1 = minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        let t2 = 1.0 - t1;
+        ::overact::guard::reach(t2, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t6 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t7 = t2 * t6;
+        let t8 = 1.0 - t7;
+        ::overact::guard::reach(t8, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t8);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t12 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t13 = 1.0 - t12;
+        ::overact::guard::reach(t13, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t13);
+        let t15 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t15, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t15;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t18 = 1.0 - t6;
+        ::overact::guard::reach(t18, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t18);
+        let t20 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t20, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t20;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t24 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t25 = t8 * t12;
+        let t26 = 1.0 - t25;
+        ::overact::guard::reach(t26, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t26);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t41 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t41, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t41);
-        let t43 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t43, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t43;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t31 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t31, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t31);
+        let t33 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t33, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t33;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t48 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t48);
-        let t52 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t52 * t48;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t57 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t62 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t62);
-        let t66 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t66 * t62;
-        let t70 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t72 = t33 - gdrive_vy_along_x * t57 + gdrive_vz_along_x * t70;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        let t73 = 1.0 / t72;
-        let t74 = t33 * t73;
-        let t78 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t39 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t44 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t46 = t24 - gdrive_vy_along_x * t39 + gdrive_vz_along_x * t44;
+        ::overact::guard::platform(t46, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t46, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t46, 1.0, "kept actuators")?;
+        let t47 = 1.0 / t46;
+        let t48 = t24 * t47;
+        let t52 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t78, 1.0, "actuators")?;
-        ::overact::guard::platform(t78, 1.0, "actuators")?;
-        let t79 = 1.0 / t78;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t62;
-        let t87 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z;
-        let t88 = t87 * t79;
-        let t96 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t98 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t96 * t88;
-        let t103 = t96 * t79;
-        let t105 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t96 * t103;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t107 = t98 * t106;
-        let t109 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t87 * t88 - t98 * t107;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        let t110 = 1.0 / t109;
-        let t118 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        ::overact::guard::platform(t52, 1.0, "actuators")?;
+        ::overact::guard::platform(t52, 1.0, "actuators")?;
+        let t53 = 1.0 / t52;
+        let t55 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let t61 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t63 = gdrive_vz_along_x + t61 + gdrive_vx_along_z;
+        let t64 = t63 * t53;
+        let t67 = gdrive_vy_along_x * gdrive_vz_along_x;
+        let t71 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let t72 = gdrive_vy_along_x + gdrive_vx_along_y + t71;
+        let t74 = t67 + gdrive_vz_along_y + gdrive_vy_along_z - t72 * t64;
+        let t77 = t72 * t53;
+        let t79 = t55 + gdrive_vy_along_z * gdrive_vy_along_z - t72 * t77;
+        ::overact::guard::platform(t79, 1.0, "actuators")?;
+        ::overact::guard::platform(t79, 1.0, "actuators")?;
+        let t80 = 1.0 / t79;
+        let t81 = t74 * t80;
+        let t83 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t63 * t64 - t74 * t81;
+        ::overact::guard::platform(t83, 1.0, "actuators")?;
+        ::overact::guard::platform(t83, 1.0, "actuators")?;
+        let t84 = 1.0 / t83;
+        let t92 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t126 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t118 * t103;
-        let t129 = t110
+        let t100 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t92 * t77;
+        let t103 = t84
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t118 * t88 - t107 * t126);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t129;
-        let t131 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t133 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t135 = t131 * t131 + t133 * t133;
-        let t138 = t106 * t126 - t107 * t129;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t138
-            + minus_gfoot_vz_along_x * t129;
-        let t142 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t143 = t135 + t142;
-        let t146 = pose[2] * (minus_rate_foot_along_x * t133);
-        let t148 = pose[1] * t143 + t146 + t146;
-        let t151 = pose[2] * (minus_rate_foot_along_x * t131);
-        let t157 = pose[2] * minus_rate_foot_along_x;
-        let t158 = minus_rate_foot_along_x * t157;
-        let t160 = t158 - pose[2] * t143;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * t148
-            - (t151 - 0.31 * t43 * t143 + t151) - gdrive_vz_along_x * t160;
-        let t163 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t168 = t118 * t79 - t103 * t138 - t88 * t129;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t168
-            + minus_gfoot_vz_along_y * t129;
-        let t172 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t48;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t168;
-        let t175 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t178 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t180 = t172 + t175 * t175 + t178 * t178;
-        let t183 = pose[0] * (minus_rate_foot_along_y * t178);
-        let t185 = pose[2] * t180 + t183 + t183;
-        let t187 = pose[0] * minus_rate_foot_along_y;
-        let t188 = minus_rate_foot_along_y * t187;
-        let t190 = t188 - pose[0] * t180;
-        let t193 = pose[0] * (minus_rate_foot_along_y * t175);
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t185
-            - (gdrive_vx_along_y * t190 + t193 - 0.31 * t9 * t180 + t193);
-        let t200 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t25;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t138;
-        let t205 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t168
-            + minus_gfoot_vy_along_z * t138;
-        let t210 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t212 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t214 = t205 * t205 + t210 + t212 * t212;
-        let t217 = pose[1] * (minus_rate_foot_along_z * t205);
-        let t219 = pose[0] * t214 + t217 + t217;
-        let t221 = pose[1] * minus_rate_foot_along_z;
-        let t222 = minus_rate_foot_along_z * t221;
-        let t224 = t222 - pose[1] * t214;
-        let t228 = pose[1] * (minus_rate_foot_along_z * t212);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t219 - gdrive_vy_along_z * t224
-            - (t228 - 0.31 * t21 * t214 + t228);
-        let t234 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t236 = t163 + gdrive_vx_along_y * t200 + gdrive_vx_along_z * t234;
-        let t243 = gdrive_vy_along_x * t163 + t200 + gdrive_vy_along_z * t234
-            - t103 * t236;
-        let t253 = t110
-            * (gdrive_vz_along_x * t163 + gdrive_vz_along_y * t200 + t234 - t88 * t236
-                - t107 * t243);
-        let t255 = t106 * t243 - t107 * t253;
-        let t259 = t79 * t236 - t103 * t255 - t88 * t253;
-        let t261 = t57 * t73;
-        let t264 = t70 * t73;
-        let t265 = c_foot_along_x * actuator_accelerations[0];
-        let t269 = 3.225806451612903 * t157;
-        let t270 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t271 = t269 * t270;
-        let t272 = t253 - t160;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t272;
-        let t274 = t271 + minus_rate_dot_left_bar_along_x;
-        let t280 = c_left_bar_along_x * t265 + 31.64516129032258 * pose[2];
-        let t285 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t265 - 9.81 * c_left_bar_along_x - 0.31 * t274)
-            - minus_s_left_bar_along_x
-                * (t280
-                    - c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x));
-        let t290 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t73;
-        let t294 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t73;
-        let t299 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t73;
-        let t304 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t73;
-        let t308 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t73;
-        let t313 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t73;
-        let t316 = 9.81 + actuator_accelerations[2];
-        let t322 = minus_gfoot_vy_along_x * t261 - minus_gfoot_vz_along_x * t264;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t255 + t148)
-            + minus_gfoot_vz_along_x * t272;
-        let t330 = minus_gfoot_vz_along_x * t299 - minus_gfoot_vy_along_x * t290;
-        let t334 = minus_gfoot_vy_along_x * t308 - minus_gfoot_vz_along_x * t313;
-        let t338 = minus_gfoot_vx_along_y * t74 + minus_gfoot_vz_along_y * t264;
-        let t339 = t259 - t190;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t339
-            + minus_gfoot_vz_along_y * (t253 + t185);
-        let t347 = minus_gfoot_vx_along_y * t294 + minus_gfoot_vz_along_y * t299;
-        let t351 = minus_gfoot_vx_along_y * t304 + minus_gfoot_vz_along_y * t313;
-        let t355 = minus_gfoot_vy_along_z * t261 - minus_gfoot_vx_along_z * t74;
-        let t358 = t255 - t224;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t259 + t219)
-            + minus_gfoot_vy_along_z * t358;
-        let t364 = minus_gfoot_vx_along_z * t294 - minus_gfoot_vy_along_z * t290;
-        let t368 = minus_gfoot_vy_along_z * t308 - minus_gfoot_vx_along_z * t304;
-        let t370 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t374 = c_foot_along_x * t142
+                - t92 * t64 - t81 * t100);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t103;
+        let t105 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t108 = t80 * t100 - t81 * t103;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t31 * t67);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t108
+            + minus_gfoot_vz_along_x * t103;
+        let t114 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t115 = t105 + t114;
+        let t118 = pose[2] * t105;
+        let rate_dot_drive_along_x = t55 * (0.31 * t33 * t115)
+            + gdrive_vz_along_x * t118;
+        let t121 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t13 * t61);
+        let t128 = t92 * t53 - t77 * t108 - t64 * t103;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t128
+            + minus_gfoot_vz_along_y * t103;
+        let t132 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t128;
+        let t134 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t135 = t132 + t134;
+        let t138 = pose[0] * minus_rate_foot_along_y;
+        let t139 = c_foot_along_y * minus_rate_left_bar_along_y * t138;
+        let t141 = pose[2] * t135 + t139 + t139;
+        let t143 = pose[0] * t134;
+        let t145 = gdrive_vz_along_y * t139;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t141
+            - (t145 - 0.31 * t15 * t135 + t145 - gdrive_vx_along_y * t143);
+        let t152 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t18 * t71);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t128
+            + minus_gfoot_vy_along_z * t108;
+        let t160 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t108;
+        let t162 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t163 = t160 + t162;
+        let t166 = pose[1] * minus_rate_foot_along_z;
+        let t167 = c_foot_along_z * minus_rate_left_bar_along_z * t166;
+        let t169 = pose[0] * t163 + t167 + t167;
+        let t171 = pose[1] * t162;
+        let t174 = gdrive_vx_along_z * t167;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t169 + gdrive_vy_along_z * t171
+            - (t174 - 0.31 * t20 * t163 + t174);
+        let t180 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t182 = t121 + gdrive_vx_along_y * t152 + gdrive_vx_along_z * t180;
+        let t189 = gdrive_vy_along_x * t121 + t152 + gdrive_vy_along_z * t180
+            - t77 * t182;
+        let t199 = t84
+            * (gdrive_vz_along_x * t121 + gdrive_vz_along_y * t152 + t180 - t64 * t182
+                - t81 * t189);
+        let t201 = t80 * t189 - t81 * t199;
+        let t205 = t53 * t182 - t77 * t201 - t64 * t199;
+        let t207 = t39 * t47;
+        let t210 = t44 * t47;
+        let t211 = -9.81 - t199;
+        let t216 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t47;
+        let t220 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t47;
+        let t225 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t47;
+        let t230 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t47;
+        let t234 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t47;
+        let t239 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t47;
+        let t242 = 9.81 + actuator_accelerations[2];
+        let t248 = minus_gfoot_vy_along_x * t207 - minus_gfoot_vz_along_x * t210;
+        let t251 = pose[2] * minus_rate_foot_along_x;
+        let t252 = c_foot_along_x * minus_rate_left_bar_along_x * t251;
+        let t257 = t199 + t118;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t201 + pose[1] * t115 + t252 + t252) + minus_gfoot_vz_along_x * t257;
+        let t263 = minus_gfoot_vz_along_x * t225 - minus_gfoot_vy_along_x * t216;
+        let t267 = minus_gfoot_vy_along_x * t234 - minus_gfoot_vz_along_x * t239;
+        let t271 = minus_gfoot_vx_along_y * t48 + minus_gfoot_vz_along_y * t210;
+        let t272 = t205 + t143;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t272
+            + minus_gfoot_vz_along_y * (t199 + t141);
+        let t280 = minus_gfoot_vx_along_y * t220 + minus_gfoot_vz_along_y * t225;
+        let t284 = minus_gfoot_vx_along_y * t230 + minus_gfoot_vz_along_y * t239;
+        let t288 = minus_gfoot_vy_along_z * t207 - minus_gfoot_vx_along_z * t48;
+        let t291 = t201 + t171;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t205 + t169)
+            + minus_gfoot_vy_along_z * t291;
+        let t297 = minus_gfoot_vx_along_z * t220 - minus_gfoot_vy_along_z * t216;
+        let t301 = minus_gfoot_vy_along_z * t234 - minus_gfoot_vx_along_z * t230;
+        let t303 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t307 = c_foot_along_x * t114
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t380 = minus_s_foot_along_y * actuator_accelerations[1]
+        let t313 = minus_s_foot_along_y * actuator_accelerations[1]
             - 9.81 * c_foot_along_y;
-        let t385 = c_foot_along_y * t172
+        let t318 = c_foot_along_y * t132
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t388 = minus_s_foot_along_z * t316;
-        let t394 = c_foot_along_z * t210
+        let t321 = minus_s_foot_along_z * t242;
+        let t327 = c_foot_along_z * t160
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t405 = 9.81 * minus_s_foot_along_y
+        let t332 = c_foot_along_x * actuator_accelerations[0];
+        let t339 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t413 = c_foot_along_z * t316;
-        let t421 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t422 = minus_rate_left_bar_along_x * t270;
-        let t423 = t421 + t422;
-        let t425 = minus_rate_left_bar_along_x * t269;
-        let t427 = minus_s_left_bar_along_x * t423 + c_left_bar_along_x * t425;
-        let t429 = minus_gleft_bar_vz_along_x * t264;
-        let t432 = minus_gleft_bar_vz_along_x * t299;
-        let t437 = minus_gleft_bar_vz_along_x * t313;
-        let t440 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t441 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t442 = minus_rate_left_bar_along_y * t441;
-        let t443 = t440 + t442;
-        let t445 = 3.225806451612903 * t187;
-        let t446 = minus_rate_left_bar_along_y * t445;
-        let t448 = minus_s_left_bar_along_y * t443 + c_left_bar_along_y * t446;
-        let t450 = minus_gleft_bar_vx_along_y * t74;
-        let t451 = t445 * t441;
-        let t454 = minus_gleft_bar_vx_along_y * t294;
-        let t459 = minus_gleft_bar_vx_along_y * t304;
-        let t462 = minus_gleft_bar_vy_along_z * t261;
-        let t463 = 3.225806451612903 * t221;
-        let t464 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t465 = t463 * t464;
-        let t467 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t468 = minus_rate_left_bar_along_z * t464;
-        let t469 = t467 + t468;
-        let t471 = minus_rate_left_bar_along_z * t463;
-        let t473 = minus_s_left_bar_along_z * t469 + c_left_bar_along_z * t471;
-        let t477 = minus_gleft_bar_vy_along_z * t290;
-        let t480 = minus_gleft_bar_vy_along_z * t308;
-        let t484 = t422 + t423;
-        let t486 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t488 = t425 + t425 - t486;
-        let t490 = c_left_bar_along_x * t484 - minus_s_left_bar_along_x * t488;
-        let t493 = 10.40582726326743 * (t157 * t157);
-        let t495 = t493 - t270 * t270;
-        let t504 = t442 + t443;
-        let t506 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t508 = t446 + t446 - t506;
-        let t510 = c_left_bar_along_y * t504 - minus_s_left_bar_along_y * t508;
-        let t513 = 10.40582726326743 * (t187 * t187);
-        let t515 = t513 - t441 * t441;
-        let t524 = t468 + t469;
-        let t526 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t528 = t471 + t471 - t526;
-        let t530 = c_left_bar_along_z * t524 - minus_s_left_bar_along_z * t528;
-        let t533 = 10.40582726326743 * (t221 * t221);
-        let t535 = t533 - t464 * t464;
-        let t547 = minus_s_left_bar_along_x * t274 + c_left_bar_along_x * (t135 - t493);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t339;
-        let t560 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t563 = minus_s_left_bar_along_y * (t451 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t560 - t513);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t358;
-        let t576 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t579 = minus_s_left_bar_along_z * (t465 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t576 - t533);
-        let t590 = 3.225806451612903 * t253;
-        let t599 = 3.225806451612903 * t259;
-        let t609 = 3.225806451612903 * t255;
-        let t635 = minus_s_left_bar_along_x * t370;
-        let t639 = t43 * (minus_rate_dot_left_bar_along_x - t271) - t66 * (t493 + t135)
-            - minus_s_foot_along_x * t484 + t322 * t635 + t429 * t280;
-        let t646 = c_left_bar_along_y * t405;
-        let t648 = minus_s_left_bar_along_y * t380;
-        let t661 = t9 * (minus_rate_dot_left_bar_along_y - t451) - t52 * (t513 + t560)
-            - minus_s_foot_along_y * t504 + t347 * t648 - t454 * t646;
-        let t665 = minus_s_left_bar_along_z * t388;
-        let t667 = c_left_bar_along_z * t413;
-        let t683 = t21 * (minus_rate_dot_left_bar_along_z - t465) - t29 * (t533 + t576)
-            - minus_s_foot_along_z * t524 + t368 * t665 - t480 * t667;
-        let t687 = t370 + 0.31 * t488 - 0.31 * t486;
-        let t702 = t380 + 0.31 * t508 - 0.31 * t506;
-        let t715 = t388 + 0.31 * t528 - 0.31 * t526;
+        let t347 = c_foot_along_z * t242;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t356 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t357 = minus_rate_left_bar_along_x * t356;
+        let t358 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t360 = t357 + t358 + t357;
+        let t361 = minus_s_left_bar_along_x * t360;
+        let t363 = minus_gleft_bar_vz_along_x * t210;
+        let t364 = 3.225806451612903 * t251;
+        let t365 = t364 * t356;
+        let t368 = minus_gleft_bar_vz_along_x * t225;
+        let t373 = minus_gleft_bar_vz_along_x * t239;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t377 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t378 = minus_rate_left_bar_along_y * t377;
+        let t379 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t381 = t378 + t379 + t378;
+        let t382 = minus_s_left_bar_along_y * t381;
+        let t384 = minus_gleft_bar_vx_along_y * t48;
+        let t385 = 3.225806451612903 * t138;
+        let t386 = t385 * t377;
+        let t389 = minus_gleft_bar_vx_along_y * t220;
+        let t394 = minus_gleft_bar_vx_along_y * t230;
+        let t397 = minus_gleft_bar_vy_along_z * t207;
+        let t398 = 3.225806451612903 * t166;
+        let t399 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t400 = t398 * t399;
+        let t402 = minus_rate_left_bar_along_z * t399;
+        let t403 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t405 = t402 + t403 + t402;
+        let t406 = minus_s_left_bar_along_z * t405;
+        let t410 = minus_gleft_bar_vy_along_z * t216;
+        let t413 = minus_gleft_bar_vy_along_z * t234;
+        let t418 = minus_rate_left_bar_along_x * t364;
+        let t419 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t421 = t418 + t418 - t419;
+        let t423 = c_left_bar_along_x * t360 - minus_s_left_bar_along_x * t421;
+        let t425 = t25 * t114;
+        let t427 = t425 - t356 * t356;
+        let t437 = minus_rate_left_bar_along_y * t385;
+        let t438 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t440 = t437 + t437 - t438;
+        let t442 = c_left_bar_along_y * t381 - minus_s_left_bar_along_y * t440;
+        let t444 = t7 * t132;
+        let t446 = t444 - t377 * t377;
+        let t456 = minus_rate_left_bar_along_z * t398;
+        let t457 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t459 = t456 + t456 - t457;
+        let t461 = c_left_bar_along_z * t405 - minus_s_left_bar_along_z * t459;
+        let t463 = t1 * t160;
+        let t465 = t463 - t399 * t399;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t257;
+        let t479 = minus_s_left_bar_along_x * (t365 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t105 - t425);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t272;
+        let t494 = minus_s_left_bar_along_y * (t386 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t134 - t444);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t291;
+        let t509 = minus_s_left_bar_along_z * (t400 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t162 - t463);
+        let t520 = 3.225806451612903 * t199;
+        let t529 = 3.225806451612903 * t205;
+        let t539 = 3.225806451612903 * t201;
+        let t566 = minus_s_left_bar_along_x * t303;
+        let t568 = t33 * (minus_rate_dot_left_bar_along_x - t365)
+            - minus_s_left_bar_along_x * c_foot_along_x * (t425 + t105)
+            - minus_s_foot_along_x * t360 + t248 * t566;
+        let t571 = c_left_bar_along_x * t332 + 31.64516129032258 * pose[2];
+        let t580 = c_left_bar_along_y * t339;
+        let t582 = minus_s_left_bar_along_y * t313;
+        let t594 = t15 * (minus_rate_dot_left_bar_along_y - t386)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t444 + t134)
+            - minus_s_foot_along_y * t381 + t280 * t582;
+        let t600 = minus_s_left_bar_along_z * t321;
+        let t602 = c_left_bar_along_z * t347;
+        let t617 = t20 * (minus_rate_dot_left_bar_along_z - t400)
+            - minus_s_left_bar_along_z * c_foot_along_z * (t463 + t162)
+            - minus_s_foot_along_z * t405 + t301 * t600;
+        let t623 = t303 + 0.31 * t421 - 0.31 * t419;
+        let t626 = minus_rate_foot_along_x * t251;
+        let t635 = minus_rate_foot_along_y * t138;
+        let t640 = t313 + 0.31 * t440 - 0.31 * t438;
+        let t653 = t321 + 0.31 * t459 - 0.31 * t457;
+        let t655 = minus_rate_foot_along_z * t166;
         Ok([
             [
-                t74 * t259 - t261 * t255 - t264 * t285, actuator_accelerations[0], 0.0, 0.0, 0.0,
+                t48 * t205 - t207 * t201 - t210 * t211, actuator_accelerations[0], 0.0, 0.0, 0.0,
                 actuator_velocities[0], 0.0, 0.0, ::overact::math::sign(actuator_velocities[0]),
-                0.0, 0.0, 1.0, 0.0, -(t322 * minus_rate_dot_foot_along_x),
-                t338 * minus_rate_dot_foot_along_y, -(t355 * minus_rate_dot_foot_along_z),
-                t322 * t370 - t374, -(t338 * t380), t355 * t388,
+                0.0, 0.0, 1.0, 0.0, -(t248 * minus_rate_dot_foot_along_x),
+                t271 * minus_rate_dot_foot_along_y, -(t288 * minus_rate_dot_foot_along_z),
+                t248 * t303 - t307, -(t271 * t313), t288 * t321,
                 c_foot_along_x * minus_rate_dot_foot_along_x
-                    - minus_s_foot_along_x * t142 - t322 * t265,
-                t338 * t405,
-                -(t355 * t413),
-                -(t322 * t427 + t429 * t271),
-                t338 * t448 - t450 * t451,
-                t462 * t465 - t355 * t473,
-                t322 * t490 - t429 * t495,
-                -(t338 * t510 + t450 * t515),
-                t355 * t530 + t462 * t535,
-                t322 * t547 - t429 * t421,
-                -(t338 * t563 + t450 * t440),
-                t355 * t579 + t462 * t467,
-                t429 * t486 - t322 * t590,
-                t338 * t599 + t450 * t506,
-                -(t355 * t609 + t462 * t526),
-                t429 * minus_rate_dot_left_bar_along_x,
-                t450 * minus_rate_dot_left_bar_along_y,
-                -(t462 * minus_rate_dot_left_bar_along_z),
-                t639,
-                t450 * t646 - t338 * t648,
-                t355 * t665 - t462 * t667,
-                t322 * t687 - t374 + t429 * t158,
-                t450 * t188 - t338 * t702,
-                t355 * t715 - t462 * t222,
+                    - minus_s_foot_along_x * t114 - t248 * t332,
+                t271 * t339,
+                -(t288 * t347),
+                -(t248 * t361 + t363 * t365),
+                t271 * t382 - t384 * t386,
+                t397 * t400 - t288 * t406,
+                t248 * t423 - t363 * t427,
+                -(t271 * t442 + t384 * t446),
+                t288 * t461 + t397 * t465,
+                t248 * t479 - t363 * t358,
+                -(t271 * t494 + t384 * t379),
+                t288 * t509 + t397 * t403,
+                t363 * t419 - t248 * t520,
+                t271 * t529 + t384 * t438,
+                -(t288 * t539 + t397 * t457),
+                t363 * minus_rate_dot_left_bar_along_x,
+                t384 * minus_rate_dot_left_bar_along_y,
+                -(t397 * minus_rate_dot_left_bar_along_z),
+                t568 + t363 * t571,
+                t384 * t580 - t271 * t582,
+                t288 * t600 - t397 * t602,
+                t248 * t623 - t307 + t363 * t626,
+                t384 * t635 - t271 * t640,
+                t288 * t653 - t397 * t655,
             ],
             [
-                t290 * t255 - t294 * t259 + t299 * t285, 0.0, actuator_accelerations[1], 0.0, 0.0,
+                t216 * t201 - t220 * t205 + t225 * t211, 0.0, actuator_accelerations[1], 0.0, 0.0,
                 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0,
-                -(t330 * minus_rate_dot_foot_along_x), -(t347 * minus_rate_dot_foot_along_y),
-                -(t364 * minus_rate_dot_foot_along_z), t330 * t370, t347 * t380 - t385, t364 * t388,
-                -(t330 * t265),
+                -(t263 * minus_rate_dot_foot_along_x), -(t280 * minus_rate_dot_foot_along_y),
+                -(t297 * minus_rate_dot_foot_along_z), t263 * t303, t280 * t313 - t318, t297 * t321,
+                -(t263 * t332),
                 c_foot_along_y * minus_rate_dot_foot_along_y
-                    - minus_s_foot_along_y * t172 - t347 * t405,
-                -(t364 * t413),
-                t432 * t271 - t330 * t427,
-                t454 * t451 - t347 * t448,
-                -(t364 * t473 + t477 * t465),
-                t330 * t490 + t432 * t495,
-                t347 * t510 + t454 * t515,
-                t364 * t530 - t477 * t535,
-                t330 * t547 + t432 * t421,
-                t347 * t563 + t454 * t440,
-                t364 * t579 - t477 * t467,
-                -(t330 * t590 + t432 * t486),
-                -(t347 * t599 + t454 * t506),
-                t477 * t526 - t364 * t609,
-                -(t432 * minus_rate_dot_left_bar_along_x),
-                -(t454 * minus_rate_dot_left_bar_along_y),
-                t477 * minus_rate_dot_left_bar_along_z,
-                t330 * t635 - t432 * t280,
-                t661,
-                t364 * t665 + t477 * t667,
-                t330 * t687 - t432 * t158,
-                t347 * t702 - t385 - t454 * t188,
-                t364 * t715 + t477 * t222,
+                    - minus_s_foot_along_y * t132 - t280 * t339,
+                -(t297 * t347),
+                t368 * t365 - t263 * t361,
+                t389 * t386 - t280 * t382,
+                -(t297 * t406 + t410 * t400),
+                t263 * t423 + t368 * t427,
+                t280 * t442 + t389 * t446,
+                t297 * t461 - t410 * t465,
+                t263 * t479 + t368 * t358,
+                t280 * t494 + t389 * t379,
+                t297 * t509 - t410 * t403,
+                -(t263 * t520 + t368 * t419),
+                -(t280 * t529 + t389 * t438),
+                t410 * t457 - t297 * t539,
+                -(t368 * minus_rate_dot_left_bar_along_x),
+                -(t389 * minus_rate_dot_left_bar_along_y),
+                t410 * minus_rate_dot_left_bar_along_z,
+                t263 * t566 - t368 * t571,
+                t594 - t389 * t580,
+                t297 * t600 + t410 * t602,
+                t263 * t623 - t368 * t626,
+                t280 * t640 - t318 - t389 * t635,
+                t297 * t653 + t410 * t655,
             ],
             [
-                t304 * t259 - t308 * t255 - t313 * t285, 0.0, 0.0, t316, actuator_accelerations[2],
+                t230 * t205 - t234 * t201 - t239 * t211, 0.0, 0.0, t242, actuator_accelerations[2],
                 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0,
-                -(t334 * minus_rate_dot_foot_along_x), t351 * minus_rate_dot_foot_along_y,
-                -(t368 * minus_rate_dot_foot_along_z), t334 * t370, -(t351 * t380),
-                t368 * t388 - t394, -(t334 * t265), t351 * t405,
+                -(t267 * minus_rate_dot_foot_along_x), t284 * minus_rate_dot_foot_along_y,
+                -(t301 * minus_rate_dot_foot_along_z), t267 * t303, -(t284 * t313),
+                t301 * t321 - t327, -(t267 * t332), t284 * t339,
                 c_foot_along_z * minus_rate_dot_foot_along_z
-                    - minus_s_foot_along_z * t210 - t368 * t413,
-                -(t334 * t427 + t437 * t271),
-                t351 * t448 - t459 * t451,
-                t480 * t465 - t368 * t473,
-                t334 * t490 - t437 * t495,
-                -(t351 * t510 + t459 * t515),
-                t368 * t530 + t480 * t535,
-                t334 * t547 - t437 * t421,
-                -(t351 * t563 + t459 * t440),
-                t368 * t579 + t480 * t467,
-                t437 * t486 - t334 * t590,
-                t351 * t599 + t459 * t506,
-                -(t368 * t609 + t480 * t526),
-                t437 * minus_rate_dot_left_bar_along_x,
-                t459 * minus_rate_dot_left_bar_along_y,
-                -(t480 * minus_rate_dot_left_bar_along_z),
-                t334 * t635 + t437 * t280,
-                t459 * t646 - t351 * t648,
-                t683,
-                t334 * t687 + t437 * t158,
-                t459 * t188 - t351 * t702,
-                t368 * t715 - t394 - t480 * t222,
+                    - minus_s_foot_along_z * t160 - t301 * t347,
+                -(t267 * t361 + t373 * t365),
+                t284 * t382 - t394 * t386,
+                t413 * t400 - t301 * t406,
+                t267 * t423 - t373 * t427,
+                -(t284 * t442 + t394 * t446),
+                t301 * t461 + t413 * t465,
+                t267 * t479 - t373 * t358,
+                -(t284 * t494 + t394 * t379),
+                t301 * t509 + t413 * t403,
+                t373 * t419 - t267 * t520,
+                t284 * t529 + t394 * t438,
+                -(t301 * t539 + t413 * t457),
+                t373 * minus_rate_dot_left_bar_along_x,
+                t394 * minus_rate_dot_left_bar_along_y,
+                -(t413 * minus_rate_dot_left_bar_along_z),
+                t267 * t566 + t373 * t571,
+                t394 * t580 - t284 * t582,
+                t617 - t413 * t602,
+                t267 * t623 + t373 * t626,
+                t394 * t635 - t284 * t640,
+                t301 * t653 - t327 - t413 * t655,
             ],
         ])
     }
@@ -6129,59 +5643,14 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 74 operations (23 additions, 48 multiplications, 3 divisions), 2 square roots, 0 trigonometric pairs, 0 signs, 75 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    #[must_use]
     pub fn idm_red_payload(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
+        _pose: &[f64; 3],
+        _twist: &[f64; 3],
         acceleration: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t2, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t8, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t8);
-        let t10 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t10, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
-        let t14 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
-            + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
-        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t28 = t21 * t21 + t26 * t26;
-        let t30 = t28 + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
-        let t43 = acceleration[0] - (t23 - 0.31 * t10 * t30 + t23)
-            + gdrive_vy_along_x * (acceleration[1] + pose[1] * t30 + t38 + t38);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t14;
-        let t48 = pose[2] * minus_rate_foot_along_x;
-        let t52 = acceleration[2] - (minus_rate_foot_along_x * t48 - pose[2] * t30);
-        let rate_dot_drive_along_x = t43 + gdrive_vz_along_x * t52;
-        let t55 = c_foot_along_x * rate_dot_drive_along_x;
-        let t60 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
-        let t75 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t55 - 9.81 * c_left_bar_along_x
-                - 0.31
-                    * (3.225806451612903 * t48 * t60 + minus_rate_dot_left_bar_along_x))
-            - minus_s_left_bar_along_x
-                * (c_left_bar_along_x * t55 + 31.64516129032258 * pose[2]
-                    - 0.31 * (t60 * t60 + t28));
-        Ok([[acceleration[0]], [acceleration[1]], [-t75]])
+    ) -> [[f64; 1]; 3] {
+        [[acceleration[0]], [acceleration[1]], [-(-9.81 - acceleration[2])]]
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -6194,60 +5663,15 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 70 operations (21 additions, 47 multiplications, 2 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 73 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
+    #[must_use]
     pub fn idm_red_payload_from_joints(
         _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
+        _joints: &[f64; 12],
+        _twist: &[f64; 3],
         acceleration: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let [(s_left_bar_along_x, c_left_bar_along_x),
-        (minus_c_foot_along_x, s_foot_along_x)] = ::overact::math::sin_cos_all([
-            joints[2], joints[1],
-        ]);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = 0.31 * s_left_bar_along_x;
-        let t5 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = 1.0 / t5;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t10 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t10);
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
-            + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t17 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t4 * (minus_rate_foot_along_x * t17);
-        let t22 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = t17 * t17 + t22 * t22;
-        let t26 = t24 + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t31 * t6;
-        let t33 = 0.31 * t31;
-        let t36 = t4 * (minus_rate_foot_along_x * t22);
-        let t41 = acceleration[0] - (t19 - 0.31 * t5 * t26 + t19)
-            - minus_gdrive_vy_along_x * (acceleration[1] - (t33 * t26 + t36 + t36));
-        let minus_gdrive_vz_along_x = t33 * minus_gfoot_vz_along_x
-            + s_foot_along_x * s_left_bar_along_x * t10;
-        let t47 = t4 * minus_rate_foot_along_x;
-        let t50 = acceleration[2] - (t4 * t26 - minus_rate_foot_along_x * t47);
-        let rate_dot_drive_along_x = t41 - minus_gdrive_vz_along_x * t50;
-        let t53 = s_foot_along_x * rate_dot_drive_along_x;
-        let t57 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t50;
-        let t73 = s_left_bar_along_x
-            * (c_left_bar_along_x * t53 - 9.81 * s_left_bar_along_x
-                - 0.31 * (t57 * t57 + t24))
-            + c_left_bar_along_x
-                * (0.31
-                    * (3.225806451612903 * t47 * t57 - minus_rate_dot_left_bar_along_x)
-                    - (s_left_bar_along_x * t53 + 9.81 * c_left_bar_along_x));
-        Ok([[acceleration[0]], [acceleration[1]], [-t73]])
+    ) -> [[f64; 1]; 3] {
+        [[acceleration[0]], [acceleration[1]], [-(-9.81 - acceleration[2])]]
     }
     /// The payload's columns of case 1, eq. (38).
     ///
@@ -6260,7 +5684,7 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 263 operations (89 additions, 162 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 266 intermediates.
+    /// 194 operations (73 additions, 112 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 197 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6271,166 +5695,129 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t9, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t13 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t13;
-        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t24, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t24);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t29, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t29);
-        let t31 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t35, 1.0, "actuators")?;
-        ::overact::guard::platform(t35, 1.0, "actuators")?;
-        let t36 = 1.0 / t35;
-        let t39 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t39, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t39);
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t15 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t15, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t15);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t44 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t44, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t44);
-        let t46 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t46, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t46;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t19 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t21 = 1.0 - t15 * t19;
+        ::overact::guard::reach(t21, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t26 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t26, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t26);
+        let t28 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t28, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t28;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t32 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t32, 1.0, "actuators")?;
+        ::overact::guard::platform(t32, 1.0, "actuators")?;
+        let t33 = 1.0 / t32;
+        let t34 = 1.0 - t19;
+        ::overact::guard::reach(t34, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t34);
+        let t36 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t36, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t36;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t49 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t49;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t49);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t49;
+        let t40 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t66 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+        let t50 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z;
-        let t67 = t66 * t36;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t74 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t74);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t74;
-        let t84 = gdrive_vy_along_x + gdrive_vx_along_y
+        let t51 = t50 * t33;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t60 = gdrive_vy_along_x + gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t86 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t84 * t67;
-        let t91 = t84 * t36;
-        let t93 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t84 * t91;
-        ::overact::guard::platform(t93, 1.0, "actuators")?;
-        ::overact::guard::platform(t93, 1.0, "actuators")?;
-        let t94 = 1.0 / t93;
-        let t95 = t86 * t94;
-        let t97 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t66 * t67 - t86 * t95;
-        ::overact::guard::platform(t97, 1.0, "actuators")?;
-        ::overact::guard::platform(t97, 1.0, "actuators")?;
-        let t98 = 1.0 / t97;
-        let t106 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        let t62 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t60 * t51;
+        let t65 = t60 * t33;
+        let t67 = t40 + gdrive_vy_along_z * gdrive_vy_along_z - t60 * t65;
+        ::overact::guard::platform(t67, 1.0, "actuators")?;
+        ::overact::guard::platform(t67, 1.0, "actuators")?;
+        let t68 = 1.0 / t67;
+        let t69 = t62 * t68;
+        let t71 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t50 * t51 - t62 * t69;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = 1.0 / t71;
+        let t80 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t114 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t106 * t91;
-        let t117 = t98
+        let t88 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t80 * t65;
+        let t91 = t72
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t106 * t67 - t95 * t114);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t117;
-        let t119 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t121 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t126 = t94 * t114 - t95 * t117;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t126
-            + minus_gfoot_vz_along_x * t117;
-        let t131 = t119 * t119 + t121 * t121
-            + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t134 = pose[2] * (minus_rate_foot_along_x * t121);
-        let t139 = pose[2] * (minus_rate_foot_along_x * t119);
-        let t145 = pose[2] * minus_rate_foot_along_x;
-        let t148 = minus_rate_foot_along_x * t145 - pose[2] * t131;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * (pose[1] * t131 + t134 + t134)
-            - (t139 - 0.31 * t46 * t131 + t139) - gdrive_vz_along_x * t148;
-        let t151 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t156 = t106 * t36 - t91 * t126 - t67 * t117;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t156
-            + minus_gfoot_vz_along_y * t117;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t13;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t156;
-        let t163 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t166 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t168 = minus_rate_foot_along_y * minus_rate_foot_along_y + t163 * t163
-            + t166 * t166;
-        let t171 = pose[0] * (minus_rate_foot_along_y * t166);
-        let t181 = pose[0] * (minus_rate_foot_along_y * t163);
-        let t186 = gdrive_vx_along_y
-            * (minus_rate_foot_along_y * (pose[0] * minus_rate_foot_along_y)
-                - pose[0] * t168) + t181 - 0.31 * t9 * t168 + t181;
-        let rate_dot_drive_along_y = gdrive_vz_along_y * (pose[2] * t168 + t171 + t171)
-            - t186;
-        let t188 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t74;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t126;
-        let t193 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t156
-            + minus_gfoot_vy_along_z * t126;
-        let t200 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t202 = t193 * t193 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t200 * t200;
-        let t205 = pose[1] * (minus_rate_foot_along_z * t193);
-        let t214 = gdrive_vx_along_z * (pose[0] * t202 + t205 + t205)
-            - gdrive_vy_along_z
-                * (minus_rate_foot_along_z * (pose[1] * minus_rate_foot_along_z)
-                    - pose[1] * t202);
-        let t216 = pose[1] * (minus_rate_foot_along_z * t200);
-        let rate_dot_drive_along_z = t214 - (t216 - 0.31 * t31 * t202 + t216);
-        let t222 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t224 = t151 + gdrive_vx_along_y * t188 + gdrive_vx_along_z * t222;
-        let t231 = gdrive_vy_along_x * t151 + t188 + gdrive_vy_along_z * t222
-            - t91 * t224;
-        let t241 = t98
-            * (gdrive_vz_along_x * t151 + gdrive_vz_along_y * t188 + t222 - t67 * t224
-                - t95 * t231);
-        let t243 = t94 * t231 - t95 * t241;
-        let t248 = c_foot_along_x * actuator_accelerations[0];
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * (t241 - t148);
-        let t260 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t248 - 9.81 * c_left_bar_along_x
-                - 0.31
-                    * (3.225806451612903 * t145
-                        * (c_left_bar_along_x * minus_rate_foot_along_x)
-                        + minus_rate_dot_left_bar_along_x));
-        Ok([
-            [t36 * t224 - t91 * t243 - t67 * t241], [t243],
-            [
-                -(t260
-                    - minus_s_left_bar_along_x
-                        * (c_left_bar_along_x * t248 + 31.64516129032258 * pose[2]
-                            - c_left_bar_along_x
-                                * (c_foot_along_x * rate_dot_drive_along_x))),
-            ],
-        ])
+                - t80 * t51 - t69 * t88);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t91;
+        let t93 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t96 = t68 * t88 - t69 * t91;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t96
+            + gdrive_vz_along_x * (minus_s_foot_along_x * minus_rate_left_bar_along_x);
+        let rate_dot_drive_along_x = t40
+            * (0.31 * t36 * (t93 + minus_rate_foot_along_x * minus_rate_foot_along_x))
+            + gdrive_vz_along_x * (pose[2] * t93);
+        let t108 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t113 = t80 * t33 - t65 * t96 - t51 * t91;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t113;
+        let t115 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let minus_rate_foot_along_y = gdrive_vx_along_y * t115
+            + minus_gfoot_vz_along_y * t91;
+        let t122 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t124 = minus_rate_foot_along_y * minus_rate_foot_along_y + t115 * t115
+            + t122 * t122;
+        let t126 = pose[0] * minus_rate_foot_along_y;
+        let t127 = t122 * t126;
+        let t135 = gdrive_vz_along_y * t127;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * (pose[2] * t124 + t127 + t127)
+            - (gdrive_vx_along_y * (minus_rate_foot_along_y * t126 - pose[0] * t124)
+                + t135 - 0.31 * t9 * t124 + t135);
+        let t142 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t96;
+        let t146 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t149 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t113
+            + gdrive_vy_along_z * t149;
+        let t155 = t146 * t146 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t149 * t149;
+        let t157 = pose[1] * minus_rate_foot_along_z;
+        let t158 = t146 * t157;
+        let t167 = gdrive_vx_along_z * t158;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * (pose[0] * t155 + t158 + t158)
+            - gdrive_vy_along_z * (minus_rate_foot_along_z * t157 - pose[1] * t155)
+            - (t167 - 0.31 * t28 * t155 + t167);
+        let t173 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t175 = t108 + gdrive_vx_along_y * t142 + gdrive_vx_along_z * t173;
+        let t182 = gdrive_vy_along_x * t108 + t142 + gdrive_vy_along_z * t173
+            - t65 * t175;
+        let t192 = t72
+            * (gdrive_vz_along_x * t108 + gdrive_vz_along_y * t142 + t173 - t51 * t175
+                - t69 * t182);
+        let t194 = t68 * t182 - t69 * t192;
+        Ok([[t33 * t175 - t65 * t194 - t51 * t192], [t194], [-(-9.81 - t192)]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -6442,119 +5829,84 @@ impl Orthoglide {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 159 operations (46 additions, 103 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 162 intermediates.
+    /// 78 operations (24 additions, 47 multiplications, 7 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 81 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
         pose: &[f64; 3],
-        twist: &[f64; 3],
+        _twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 1]; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t2, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t7, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t7);
-        let t9 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t9, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t14 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t14, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t14);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t19 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t19, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t19);
-        let t21 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t21, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t25 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t25);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t25;
-        let t33 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t36 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t36, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t36);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t41 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t41, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t41);
-        let t43 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t43, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t43;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t2 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        ::overact::guard::reach(t2, "along_z")?;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t48 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t48);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t48;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t57 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let c_left_bar_along_z = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t6 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t8 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t8, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t8);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t62 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t62);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t62;
-        let t70 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t72 = t33 - gdrive_vy_along_x * t57 + gdrive_vz_along_x * t70;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t72, 1.0, "kept actuators")?;
-        let t73 = 1.0 / t72;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
-            + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t62;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t85 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t87 = pose[2] * (minus_rate_foot_along_x * t85);
-        let t90 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t92 = t85 * t85 + t90 * t90;
-        let t94 = t92 + minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t101 = pose[2] * (minus_rate_foot_along_x * t90);
-        let t106 = acceleration[0] - (t87 - 0.31 * t43 * t94 + t87)
-            + gdrive_vy_along_x * (acceleration[1] + pose[1] * t94 + t101 + t101);
-        let t107 = pose[2] * minus_rate_foot_along_x;
-        let t111 = acceleration[2] - (minus_rate_foot_along_x * t107 - pose[2] * t94);
-        let rate_dot_drive_along_x = t106 + gdrive_vz_along_x * t111;
-        let t114 = c_foot_along_x * rate_dot_drive_along_x;
-        let t119 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t111;
-        let t134 = c_left_bar_along_x
-            * (minus_s_left_bar_along_x * t114 - 9.81 * c_left_bar_along_x
-                - 0.31
-                    * (3.225806451612903 * t107 * t119
-                        + minus_rate_dot_left_bar_along_x))
-            - minus_s_left_bar_along_x
-                * (c_left_bar_along_x * t114 + 31.64516129032258 * pose[2]
-                    - 0.31 * (t119 * t119 + t92));
-        let t150 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t73 * acceleration[1]
-            - (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t73
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
+        let t12 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t13 = 1.0 - t12;
+        ::overact::guard::reach(t13, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t13);
+        let t15 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t15, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t15;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t18 = 1.0 - t6;
+        ::overact::guard::reach(t18, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t18);
+        let t20 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t20, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t20;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t24 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t26 = 1.0 - t8 * t12;
+        ::overact::guard::reach(t26, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t26);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t30 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t30, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t30);
+        let t32 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t32, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t32;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t38 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t43 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t45 = t24 - gdrive_vy_along_x * t38 + gdrive_vz_along_x * t43;
+        ::overact::guard::platform(t45, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t45, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t45, 1.0, "kept actuators")?;
+        let t46 = 1.0 / t45;
+        let t53 = -9.81 - acceleration[2];
+        let t69 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t46 * acceleration[1]
+            - (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t46
                 * acceleration[0]
-            + (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t73 * t134;
-        let t164 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t73
+            + (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t46 * t53;
+        let t83 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t46
             * acceleration[0]
-            - (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t73
+            - (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t46
                 * acceleration[1]
-            - (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t73 * t134;
+            - (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t46 * t53;
         Ok([
             [
-                t33 * t73 * acceleration[0] - t57 * t73 * acceleration[1]
-                    - t70 * t73 * t134,
+                t24 * t46 * acceleration[0] - t38 * t46 * acceleration[1]
+                    - t43 * t46 * t53,
             ],
-            [t150],
-            [t164],
+            [t69],
+            [t83],
         ])
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
@@ -6565,7 +5917,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 69 operations (15 additions, 45 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 72 intermediates.
+    /// 42 operations (12 additions, 24 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 45 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6573,59 +5925,49 @@ impl Orthoglide {
         pose: &[f64; 3],
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t9, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t13 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y
-            + minus_s_left_bar_along_y * c_foot_along_y * t13;
-        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t24, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t24);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
-        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t29, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t29);
-        let t31 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t38 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t38, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t38);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = pose[1] / (0.31 * c_left_bar_along_x);
-        let t43 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t43, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t43);
-        let t45 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t45, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t45;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t15 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t15, "along_x")?;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t52 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t52);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z
-            + minus_s_left_bar_along_z * c_foot_along_z * t52;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t63 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t63);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x
-            + minus_s_left_bar_along_x * c_foot_along_x * t63;
+        let c_left_bar_along_x = ::overact::math::sqrt(t15);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t19 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t21 = 1.0 - t15 * t19;
+        ::overact::guard::reach(t21, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t25 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t25);
+        let t27 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t27, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t27;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t32 = 1.0 - t19;
+        ::overact::guard::reach(t32, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t32);
+        let t34 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t34, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t34;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
         Ok([
             torques[0] + gdrive_vx_along_y * torques[1] + gdrive_vx_along_z * torques[2],
@@ -6656,7 +5998,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 1020 operations (442 additions, 566 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1026 intermediates.
+    /// 977 operations (433 additions, 535 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 983 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6666,450 +6008,438 @@ impl Orthoglide {
         acceleration: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t1 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t4 = 0.31 * c_left_bar_along_x;
         let minus_s_foot_along_x = pose[1] / t4;
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t9, 1.0, "along_x")?;
         let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t14 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t14);
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t17 = gdrive_vy_along_x * gdrive_vz_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t7 * t17);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t14;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t21 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t23 = pose[2] * (minus_rate_foot_along_x * t21);
-        let t26 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t28 = t21 * t21 + t26 * t26;
-        let t29 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t30 = t28 + t29;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t38 = pose[2] * (minus_rate_foot_along_x * t26);
-        let t41 = acceleration[1] + pose[1] * t30 + t38 + t38;
-        let t45 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t45 * t14;
-        let t48 = pose[2] * minus_rate_foot_along_x;
-        let t52 = acceleration[2] - (minus_rate_foot_along_x * t48 - pose[2] * t30);
-        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t9 * t30 + t23)
-            + gdrive_vy_along_x * t41 + gdrive_vz_along_x * t52;
+        let t22 = pose[2] * minus_rate_foot_along_x;
+        let t23 = c_foot_along_x * minus_rate_left_bar_along_x * t22;
+        let t24 = gdrive_vy_along_x * t23;
+        let t26 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t27 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t28 = t26 + t27;
+        let t36 = acceleration[1] + pose[1] * t28 + t23 + t23;
+        let t40 = acceleration[2] + pose[2] * t26;
+        let rate_dot_drive_along_x = acceleration[0] - (t24 - 0.31 * t9 * t28 + t24)
+            + gdrive_vy_along_x * t36 + gdrive_vz_along_x * t40;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t41
-            + minus_gfoot_vz_along_x * t52;
-        let t73 = c_foot_along_x * rate_dot_drive_along_x;
-        let t77 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t84 = c_foot_along_x
-            * (parameters[7] * minus_rate_dot_foot_along_x - parameters[6] * t29
-                + parameters[8] * t73)
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t36
+            + minus_gfoot_vz_along_x * t40;
+        let t61 = c_foot_along_x * rate_dot_drive_along_x;
+        let t65 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t72 = c_foot_along_x
+            * (parameters[7] * minus_rate_dot_foot_along_x - parameters[6] * t27
+                + parameters[8] * t61)
             + minus_s_foot_along_x
-                * (parameters[8] * t77
+                * (parameters[8] * t65
                     - (parameters[6] * minus_rate_dot_foot_along_x
-                        + parameters[7] * t29));
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t52;
-        let t87 = 3.225806451612903 * t48;
-        let t88 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t89 = t87 * t88;
-        let t90 = minus_rate_dot_left_bar_along_x - t89;
-        let t92 = t88 * t88;
-        let t93 = t92 + t28;
-        let t96 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t101 = c_left_bar_along_x * t73 + 31.64516129032258 * pose[2];
-        let t107 = minus_s_left_bar_along_x * t73 - 9.81 * c_left_bar_along_x;
-        let t109 = t89 + minus_rate_dot_left_bar_along_x;
-        let t112 = 10.40582726326743 * (t48 * t48);
-        let t113 = t112 + t28;
-        let t116 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t121 = t9
-            * (parameters[16] * t90 - parameters[15] * t93 - parameters[17] * t96
-                + parameters[18] * t101)
-            + t45
-                * (parameters[18] * t107
-                    - (parameters[15] * t109 + parameters[16] * t113
-                        + parameters[17] * t116));
-        let t122 = minus_rate_left_bar_along_x * t88;
-        let t123 = t116 + t122;
-        let t124 = t122 + t123;
-        let t126 = minus_rate_left_bar_along_x * t87;
-        let t127 = t126 - t96;
-        let t128 = t126 + t127;
-        let t137 = parameters[0] * rate_dot_drive_along_x
+                        + parameters[7] * t27));
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
+        let t75 = 3.225806451612903 * t22;
+        let t76 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t77 = t75 * t76;
+        let t78 = minus_rate_dot_left_bar_along_x - t77;
+        let t80 = t76 * t76;
+        let t81 = t80 + t26;
+        let t84 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t89 = c_left_bar_along_x * t61 + 31.64516129032258 * pose[2];
+        let t93 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t96 = minus_s_left_bar_along_x * t61 - 9.81 * c_left_bar_along_x;
+        let t98 = t77 + minus_rate_dot_left_bar_along_x;
+        let t100 = t1 * t27;
+        let t101 = t100 + t26;
+        let t104 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t109 = t9
+            * (parameters[16] * t78 - parameters[15] * t81 - parameters[17] * t84
+                + parameters[18] * t89)
+            + t93
+                * (parameters[18] * t96
+                    - (parameters[15] * t98 + parameters[16] * t101
+                        + parameters[17] * t104));
+        let t110 = minus_rate_left_bar_along_x * t76;
+        let t111 = t104 + t110;
+        let t112 = t110 + t111;
+        let t114 = minus_rate_left_bar_along_x * t75;
+        let t115 = t114 - t84;
+        let t116 = t114 + t115;
+        let t125 = parameters[0] * rate_dot_drive_along_x
             + parameters[1] * rate_dot_drive_along_x + parameters[2] * rate_drive_along_x
             + ::overact::math::signed(parameters[3], rate_drive_along_x) + parameters[4]
-            + t84 + t121
+            + t72 + t109
             - minus_s_foot_along_x
-                * (parameters[16] * t124 - parameters[15] * t128 - parameters[17] * t29
-                    - parameters[18] * t77);
-        let t154 = t9
-            * (parameters[26] * t90 - parameters[25] * t93 - parameters[27] * t96
-                + parameters[28] * t101)
-            + t45
-                * (parameters[28] * t107
-                    - (parameters[25] * t109 + parameters[26] * t113
-                        + parameters[27] * t116));
-        let t164 = t137 + t154
+                * (parameters[16] * t112 - parameters[15] * t116 - parameters[17] * t27
+                    - parameters[18] * t65);
+        let t142 = t9
+            * (parameters[26] * t78 - parameters[25] * t81 - parameters[27] * t84
+                + parameters[28] * t89)
+            + t93
+                * (parameters[28] * t96
+                    - (parameters[25] * t98 + parameters[26] * t101
+                        + parameters[27] * t104));
+        let t152 = t125 + t142
             - minus_s_foot_along_x
-                * (parameters[26] * t124 - parameters[25] * t128 - parameters[27] * t29
-                    - parameters[28] * t77);
-        let t166 = t101 - 0.31 * t93;
-        let t169 = t107 - 0.31 * t109;
-        let t171 = c_left_bar_along_x * t166 + minus_s_left_bar_along_x * t169;
-        let t176 = parameters[32] * t171
-            - (parameters[30] * t29 + parameters[31] * minus_rate_dot_foot_along_x);
-        let t182 = t77 + 0.31 * t128;
-        let t184 = parameters[30] * minus_rate_dot_foot_along_x - parameters[31] * t29
-            - parameters[32] * t182;
-        let t187 = t164 + c_foot_along_x * t176 - minus_s_foot_along_x * t184;
-        let t190 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t190, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t190);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t192 = 0.31 * c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] / t192;
-        let t195 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t195, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t195);
-        let t197 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t197, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t197;
+                * (parameters[26] * t112 - parameters[25] * t116 - parameters[27] * t27
+                    - parameters[28] * t65);
+        let t159 = c_left_bar_along_x * (t89 - 0.31 * t81)
+            + minus_s_left_bar_along_x * (t96 - 0.31 * t98);
+        let t164 = parameters[32] * t159
+            - (parameters[30] * t27 + parameters[31] * minus_rate_dot_foot_along_x);
+        let t170 = t65 + 0.31 * t116;
+        let t172 = parameters[30] * minus_rate_dot_foot_along_x - parameters[31] * t27
+            - parameters[32] * t170;
+        let t175 = t152 + c_foot_along_x * t164 - minus_s_foot_along_x * t172;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t201 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t201);
-        let t205 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t205 * t201;
+        let t177 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t178 = 1.0 - t177;
+        ::overact::guard::reach(t178, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t178);
+        let t180 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t180;
+        let t183 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t183, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t183);
+        let t185 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t185, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t185;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_gleft_bar_vx_along_y = c_foot_along_y * minus_gfoot_vz_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t190 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t192 = acceleration[0] + pose[0] * t190;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t195 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t183 * t195);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t211 = pose[0] * minus_rate_foot_along_y;
-        let t213 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t201;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t216 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t219 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t221 = t213 + t216 * t216 + t219 * t219;
-        let t224 = acceleration[0] - (minus_rate_foot_along_y * t211 - pose[0] * t221);
-        let t227 = pose[0] * (minus_rate_foot_along_y * t216);
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t237 = pose[0] * (minus_rate_foot_along_y * t219);
-        let t240 = acceleration[2] + pose[2] * t221 + t237 + t237;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t224 + acceleration[1]
-            - (t227 - 0.31 * t197 * t221 + t227) + gdrive_vz_along_y * t240;
+        let t201 = pose[0] * minus_rate_foot_along_y;
+        let t203 = t201 * (c_foot_along_y * minus_rate_left_bar_along_y);
+        let t204 = gdrive_vz_along_y * t203;
+        let t206 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t207 = t206 + t190;
+        let t216 = acceleration[2] + pose[2] * t207 + t203 + t203;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t192 + acceleration[1]
+            - (t204 - 0.31 * t185 * t207 + t204) + gdrive_vz_along_y * t216;
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t224
-            + minus_gfoot_vz_along_y * t240;
-        let t263 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t269 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t276 = c_foot_along_y
-            * (parameters[40] * minus_rate_dot_foot_along_y - parameters[39] * t213
-                + parameters[41] * t263)
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t192
+            + minus_gfoot_vz_along_y * t216;
+        let t239 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t245 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t252 = c_foot_along_y
+            * (parameters[40] * minus_rate_dot_foot_along_y - parameters[39] * t206
+                + parameters[41] * t239)
             + minus_s_foot_along_y
-                * (parameters[41] * t269
+                * (parameters[41] * t245
                     - (parameters[39] * minus_rate_dot_foot_along_y
-                        + parameters[40] * t213));
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t224;
-        let t279 = 3.225806451612903 * t211;
-        let t280 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t281 = t279 * t280;
-        let t282 = minus_rate_dot_left_bar_along_y - t281;
-        let t284 = t280 * t280;
-        let t285 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t286 = t284 + t285;
-        let t289 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t292 = c_left_bar_along_y * t263;
-        let t296 = minus_s_left_bar_along_y * t263;
-        let t298 = t281 + minus_rate_dot_left_bar_along_y;
-        let t301 = 10.40582726326743 * (t211 * t211);
-        let t302 = t301 + t285;
-        let t305 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t310 = t197
-            * (parameters[49] * t282 - parameters[48] * t286 - parameters[50] * t289
-                + parameters[51] * t292)
-            + t205
-                * (parameters[51] * t296
-                    - (parameters[48] * t298 + parameters[49] * t302
-                        + parameters[50] * t305));
-        let t311 = minus_rate_left_bar_along_y * t280;
-        let t312 = t305 + t311;
-        let t313 = t311 + t312;
-        let t315 = minus_rate_left_bar_along_y * t279;
-        let t316 = t315 - t289;
-        let t317 = t315 + t316;
-        let t326 = parameters[33] * rate_dot_drive_along_y
+                        + parameters[40] * t206));
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t192;
+        let t255 = 3.225806451612903 * t201;
+        let t256 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t257 = t255 * t256;
+        let t258 = minus_rate_dot_left_bar_along_y - t257;
+        let t260 = t256 * t256;
+        let t261 = t260 + t190;
+        let t264 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t267 = c_left_bar_along_y * t239;
+        let t271 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t272 = minus_s_left_bar_along_y * t239;
+        let t274 = t257 + minus_rate_dot_left_bar_along_y;
+        let t276 = t177 * t206;
+        let t277 = t276 + t190;
+        let t280 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t285 = t185
+            * (parameters[49] * t258 - parameters[48] * t261 - parameters[50] * t264
+                + parameters[51] * t267)
+            + t271
+                * (parameters[51] * t272
+                    - (parameters[48] * t274 + parameters[49] * t277
+                        + parameters[50] * t280));
+        let t286 = minus_rate_left_bar_along_y * t256;
+        let t287 = t280 + t286;
+        let t288 = t286 + t287;
+        let t290 = minus_rate_left_bar_along_y * t255;
+        let t291 = t290 - t264;
+        let t292 = t290 + t291;
+        let t301 = parameters[33] * rate_dot_drive_along_y
             + parameters[34] * rate_dot_drive_along_y
             + parameters[35] * rate_drive_along_y
             + ::overact::math::signed(parameters[36], rate_drive_along_y)
-            + parameters[37] + t276 + t310
+            + parameters[37] + t252 + t285
             - minus_s_foot_along_y
-                * (parameters[49] * t313 - parameters[48] * t317 - parameters[50] * t213
-                    - parameters[51] * t269);
-        let t343 = t197
-            * (parameters[59] * t282 - parameters[58] * t286 - parameters[60] * t289
-                + parameters[61] * t292)
-            + t205
-                * (parameters[61] * t296
-                    - (parameters[58] * t298 + parameters[59] * t302
-                        + parameters[60] * t305));
-        let t353 = t326 + t343
+                * (parameters[49] * t288 - parameters[48] * t292 - parameters[50] * t206
+                    - parameters[51] * t245);
+        let t318 = t185
+            * (parameters[59] * t258 - parameters[58] * t261 - parameters[60] * t264
+                + parameters[61] * t267)
+            + t271
+                * (parameters[61] * t272
+                    - (parameters[58] * t274 + parameters[59] * t277
+                        + parameters[60] * t280));
+        let t328 = t301 + t318
             - minus_s_foot_along_y
-                * (parameters[59] * t313 - parameters[58] * t317 - parameters[60] * t213
-                    - parameters[61] * t269);
-        let t360 = c_left_bar_along_y * (t292 - 0.31 * t286)
-            + minus_s_left_bar_along_y * (t296 - 0.31 * t298);
-        let t365 = parameters[65] * t360
-            - (parameters[63] * t213 + parameters[64] * minus_rate_dot_foot_along_y);
-        let t371 = t269 + 0.31 * t317;
-        let t373 = parameters[63] * minus_rate_dot_foot_along_y - parameters[64] * t213
-            - parameters[65] * t371;
-        let t376 = t353 + c_foot_along_y * t365 - minus_s_foot_along_y * t373;
-        let t386 = t285 - t301;
-        let t394 = parameters[43] * t313 - parameters[42] * t315 + parameters[44] * t386
-            + parameters[45] * t316 - parameters[46] * t282 + parameters[47] * t315;
-        let t407 = t284 - t285;
-        let t411 = parameters[42] * t312 + parameters[43] * t317 - parameters[44] * t298
-            - parameters[45] * t311 + parameters[46] * t407 + parameters[47] * t311;
-        let t417 = c_left_bar_along_y
-            * (t394 + parameters[48] * t269 + parameters[50] * t292)
+                * (parameters[59] * t288 - parameters[58] * t292 - parameters[60] * t206
+                    - parameters[61] * t245);
+        let t335 = c_left_bar_along_y * (t267 - 0.31 * t261)
+            + minus_s_left_bar_along_y * (t272 - 0.31 * t274);
+        let t340 = parameters[65] * t335
+            - (parameters[63] * t206 + parameters[64] * minus_rate_dot_foot_along_y);
+        let t346 = t245 + 0.31 * t292;
+        let t348 = parameters[63] * minus_rate_dot_foot_along_y - parameters[64] * t206
+            - parameters[65] * t346;
+        let t351 = t328 + c_foot_along_y * t340 - minus_s_foot_along_y * t348;
+        let t361 = t190 - t276;
+        let t369 = parameters[43] * t288 - parameters[42] * t290 + parameters[44] * t361
+            + parameters[45] * t291 - parameters[46] * t258 + parameters[47] * t290;
+        let t382 = t260 - t190;
+        let t386 = parameters[42] * t287 + parameters[43] * t292 - parameters[44] * t274
+            - parameters[45] * t286 + parameters[46] * t382 + parameters[47] * t286;
+        let t392 = c_left_bar_along_y
+            * (t369 + parameters[48] * t245 + parameters[50] * t267)
             - minus_s_left_bar_along_y
-                * (t411 - parameters[49] * t269 - parameters[50] * t296);
-        let t429 = parameters[53] * t313 - parameters[52] * t315 + parameters[54] * t386
-            + parameters[55] * t316 - parameters[56] * t282 + parameters[57] * t315;
-        let t445 = parameters[52] * t312 + parameters[53] * t317 - parameters[54] * t298
-            - parameters[55] * t311 + parameters[56] * t407 + parameters[57] * t311;
-        let t451 = c_left_bar_along_y
-            * (t429 + parameters[58] * t269 + parameters[60] * t292)
+                * (t386 - parameters[49] * t245 - parameters[50] * t272);
+        let t404 = parameters[53] * t288 - parameters[52] * t290 + parameters[54] * t361
+            + parameters[55] * t291 - parameters[56] * t258 + parameters[57] * t290;
+        let t420 = parameters[52] * t287 + parameters[53] * t292 - parameters[54] * t274
+            - parameters[55] * t286 + parameters[56] * t382 + parameters[57] * t286;
+        let t426 = c_left_bar_along_y
+            * (t404 + parameters[58] * t245 + parameters[60] * t267)
             - minus_s_left_bar_along_y
-                * (t445 - parameters[59] * t269 - parameters[60] * t296);
-        let t460 = parameters[39] * t269 - parameters[38] * minus_rate_dot_foot_along_y
-            - parameters[40] * t263 + t417 + t451 + parameters[63] * t371
-            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t360
-            - t192 * t373;
-        let t464 = t301 - t284;
-        let t474 = parameters[42] * t281 + parameters[43] * t464 + parameters[44] * t305
-            - parameters[45] * t281 - parameters[46] * t289
+                * (t420 - parameters[59] * t245 - parameters[60] * t272);
+        let t435 = parameters[39] * t245 - parameters[38] * minus_rate_dot_foot_along_y
+            - parameters[40] * t239 + t392 + t426 + parameters[63] * t346
+            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t335
+            - t180 * t348;
+        let t439 = t276 - t260;
+        let t449 = parameters[42] * t257 + parameters[43] * t439 + parameters[44] * t280
+            - parameters[45] * t257 - parameters[46] * t264
             - parameters[47] * minus_rate_dot_left_bar_along_y;
-        let t489 = parameters[52] * t281 + parameters[53] * t464 + parameters[54] * t305
-            - parameters[55] * t281 - parameters[56] * t289
+        let t464 = parameters[52] * t257 + parameters[53] * t439 + parameters[54] * t280
+            - parameters[55] * t257 - parameters[56] * t264
             - parameters[57] * minus_rate_dot_left_bar_along_y;
-        let t499 = t474 + parameters[48] * t296 - parameters[49] * t292 + t489
-            + parameters[58] * t296 - parameters[59] * t292 + pose[0] * t365
-            - t192 * (acceleration[0] * parameters[65]);
-        let t505 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t505, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t505);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t507 = 0.31 * c_left_bar_along_z;
-        let minus_s_foot_along_z = pose[0] / t507;
-        let t510 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t510, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t510);
-        let t512 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t512, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t512;
+        let t474 = t449 + parameters[48] * t272 - parameters[49] * t267 + t464
+            + parameters[58] * t272 - parameters[59] * t267 + pose[0] * t340
+            - t180 * (acceleration[0] * parameters[65]);
+        let t478 = t2 * t6;
+        let t479 = 1.0 - t478;
+        ::overact::guard::reach(t479, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t479);
+        let t481 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t481;
+        let t484 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t484, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t484);
+        let t486 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t486, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t486;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t515 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t515;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t518 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t515);
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t491 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t484 * t491);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t527 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t529 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t531 = t518 * t518 + t527 + t529 * t529;
-        let t534 = pose[1] * (minus_rate_foot_along_z * t518);
-        let t537 = acceleration[0] + pose[0] * t531 + t534 + t534;
-        let t540 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t540 * t515;
-        let t543 = pose[1] * minus_rate_foot_along_z;
-        let t547 = acceleration[1] - (minus_rate_foot_along_z * t543 - pose[1] * t531);
-        let t551 = pose[1] * (minus_rate_foot_along_z * t529);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t537 + gdrive_vy_along_z * t547
-            + acceleration[2] - (t551 - 0.31 * t512 * t531 + t551);
-        let t558 = 9.81 + rate_dot_drive_along_z;
+        let t496 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t499 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t500 = t496 + t499;
+        let t503 = pose[1] * minus_rate_foot_along_z;
+        let t504 = c_foot_along_z * minus_rate_left_bar_along_z * t503;
+        let t507 = acceleration[0] + pose[0] * t500 + t504 + t504;
+        let t510 = acceleration[1] + pose[1] * t499;
+        let t513 = gdrive_vx_along_z * t504;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t507 + gdrive_vy_along_z * t510
+            + acceleration[2] - (t513 - 0.31 * t486 * t500 + t513);
+        let t520 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t537
-            + minus_gfoot_vy_along_z * t547;
-        let t577 = c_foot_along_z * t558;
-        let t581 = minus_s_foot_along_z * t558;
-        let t588 = c_foot_along_z
-            * (parameters[73] * minus_rate_dot_foot_along_z - parameters[72] * t527
-                + parameters[74] * t577)
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t507
+            + minus_gfoot_vy_along_z * t510;
+        let t539 = c_foot_along_z * t520;
+        let t543 = minus_s_foot_along_z * t520;
+        let t550 = c_foot_along_z
+            * (parameters[73] * minus_rate_dot_foot_along_z - parameters[72] * t496
+                + parameters[74] * t539)
             + minus_s_foot_along_z
-                * (parameters[74] * t581
+                * (parameters[74] * t543
                     - (parameters[72] * minus_rate_dot_foot_along_z
-                        + parameters[73] * t527));
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t547;
-        let t591 = 3.225806451612903 * t543;
-        let t592 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t593 = t591 * t592;
-        let t594 = minus_rate_dot_left_bar_along_z - t593;
-        let t596 = t592 * t592;
-        let t597 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t598 = t596 + t597;
-        let t601 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t604 = c_left_bar_along_z * t577;
-        let t608 = minus_s_left_bar_along_z * t577;
-        let t610 = t593 + minus_rate_dot_left_bar_along_z;
-        let t613 = 10.40582726326743 * (t543 * t543);
-        let t614 = t613 + t597;
-        let t617 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t622 = t512
-            * (parameters[82] * t594 - parameters[81] * t598 - parameters[83] * t601
-                + parameters[84] * t604)
-            + t540
-                * (parameters[84] * t608
-                    - (parameters[81] * t610 + parameters[82] * t614
-                        + parameters[83] * t617));
-        let t623 = minus_rate_left_bar_along_z * t592;
-        let t624 = t617 + t623;
-        let t625 = t623 + t624;
-        let t627 = minus_rate_left_bar_along_z * t591;
-        let t628 = t627 - t601;
-        let t629 = t627 + t628;
-        let t638 = parameters[66] * t558 + parameters[67] * rate_dot_drive_along_z
+                        + parameters[73] * t496));
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t510;
+        let t553 = 3.225806451612903 * t503;
+        let t554 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t555 = t553 * t554;
+        let t556 = minus_rate_dot_left_bar_along_z - t555;
+        let t558 = t554 * t554;
+        let t559 = t558 + t499;
+        let t562 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t565 = c_left_bar_along_z * t539;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t570 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t571 = minus_s_left_bar_along_z * t539;
+        let t573 = t555 + minus_rate_dot_left_bar_along_z;
+        let t575 = t478 * t496;
+        let t576 = t575 + t499;
+        let t579 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t584 = t486
+            * (parameters[82] * t556 - parameters[81] * t559 - parameters[83] * t562
+                + parameters[84] * t565)
+            + t570
+                * (parameters[84] * t571
+                    - (parameters[81] * t573 + parameters[82] * t576
+                        + parameters[83] * t579));
+        let t585 = minus_rate_left_bar_along_z * t554;
+        let t586 = t579 + t585;
+        let t587 = t585 + t586;
+        let t589 = minus_rate_left_bar_along_z * t553;
+        let t590 = t589 - t562;
+        let t591 = t589 + t590;
+        let t600 = parameters[66] * t520 + parameters[67] * rate_dot_drive_along_z
             + parameters[68] * rate_drive_along_z
             + ::overact::math::signed(parameters[69], rate_drive_along_z)
-            + parameters[70] + t588 + t622
+            + parameters[70] + t550 + t584
             - minus_s_foot_along_z
-                * (parameters[82] * t625 - parameters[81] * t629 - parameters[83] * t527
-                    - parameters[84] * t581);
-        let t655 = t512
-            * (parameters[92] * t594 - parameters[91] * t598 - parameters[93] * t601
-                + parameters[94] * t604)
-            + t540
-                * (parameters[94] * t608
-                    - (parameters[91] * t610 + parameters[92] * t614
-                        + parameters[93] * t617));
-        let t665 = t638 + t655
+                * (parameters[82] * t587 - parameters[81] * t591 - parameters[83] * t496
+                    - parameters[84] * t543);
+        let t617 = t486
+            * (parameters[92] * t556 - parameters[91] * t559 - parameters[93] * t562
+                + parameters[94] * t565)
+            + t570
+                * (parameters[94] * t571
+                    - (parameters[91] * t573 + parameters[92] * t576
+                        + parameters[93] * t579));
+        let t627 = t600 + t617
             - minus_s_foot_along_z
-                * (parameters[92] * t625 - parameters[91] * t629 - parameters[93] * t527
-                    - parameters[94] * t581);
-        let t672 = c_left_bar_along_z * (t604 - 0.31 * t598)
-            + minus_s_left_bar_along_z * (t608 - 0.31 * t610);
-        let t677 = parameters[98] * t672
-            - (parameters[96] * t527 + parameters[97] * minus_rate_dot_foot_along_z);
-        let t683 = t581 + 0.31 * t629;
-        let t685 = parameters[96] * minus_rate_dot_foot_along_z - parameters[97] * t527
-            - parameters[98] * t683;
-        let t688 = t665 + c_foot_along_z * t677 - minus_s_foot_along_z * t685;
-        let t698 = t597 - t613;
-        let t706 = parameters[76] * t625 - parameters[75] * t627 + parameters[77] * t698
-            + parameters[78] * t628 - parameters[79] * t594 + parameters[80] * t627;
-        let t719 = t596 - t597;
-        let t723 = parameters[75] * t624 + parameters[76] * t629 - parameters[77] * t610
-            - parameters[78] * t623 + parameters[79] * t719 + parameters[80] * t623;
-        let t729 = c_left_bar_along_z
-            * (t706 + parameters[81] * t581 + parameters[83] * t604)
+                * (parameters[92] * t587 - parameters[91] * t591 - parameters[93] * t496
+                    - parameters[94] * t543);
+        let t634 = c_left_bar_along_z * (t565 - 0.31 * t559)
+            + minus_s_left_bar_along_z * (t571 - 0.31 * t573);
+        let t639 = parameters[98] * t634
+            - (parameters[96] * t496 + parameters[97] * minus_rate_dot_foot_along_z);
+        let t645 = t543 + 0.31 * t591;
+        let t647 = parameters[96] * minus_rate_dot_foot_along_z - parameters[97] * t496
+            - parameters[98] * t645;
+        let t650 = t627 + c_foot_along_z * t639 - minus_s_foot_along_z * t647;
+        let t660 = t499 - t575;
+        let t668 = parameters[76] * t587 - parameters[75] * t589 + parameters[77] * t660
+            + parameters[78] * t590 - parameters[79] * t556 + parameters[80] * t589;
+        let t681 = t558 - t499;
+        let t685 = parameters[75] * t586 + parameters[76] * t591 - parameters[77] * t573
+            - parameters[78] * t585 + parameters[79] * t681 + parameters[80] * t585;
+        let t691 = c_left_bar_along_z
+            * (t668 + parameters[81] * t543 + parameters[83] * t565)
             - minus_s_left_bar_along_z
-                * (t723 - parameters[82] * t581 - parameters[83] * t608);
-        let t741 = parameters[86] * t625 - parameters[85] * t627 + parameters[87] * t698
-            + parameters[88] * t628 - parameters[89] * t594 + parameters[90] * t627;
-        let t757 = parameters[85] * t624 + parameters[86] * t629 - parameters[87] * t610
-            - parameters[88] * t623 + parameters[89] * t719 + parameters[90] * t623;
-        let t763 = c_left_bar_along_z
-            * (t741 + parameters[91] * t581 + parameters[93] * t604)
+                * (t685 - parameters[82] * t543 - parameters[83] * t571);
+        let t703 = parameters[86] * t587 - parameters[85] * t589 + parameters[87] * t660
+            + parameters[88] * t590 - parameters[89] * t556 + parameters[90] * t589;
+        let t719 = parameters[85] * t586 + parameters[86] * t591 - parameters[87] * t573
+            - parameters[88] * t585 + parameters[89] * t681 + parameters[90] * t585;
+        let t725 = c_left_bar_along_z
+            * (t703 + parameters[91] * t543 + parameters[93] * t565)
             - minus_s_left_bar_along_z
-                * (t757 - parameters[92] * t581 - parameters[93] * t608);
-        let t772 = parameters[72] * t581 - parameters[71] * minus_rate_dot_foot_along_z
-            - parameters[73] * t577 + t729 + t763 + parameters[96] * t683
-            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t672
-            - t507 * t685;
-        let t775 = t187 + gdrive_vx_along_y * t376 - minus_gfoot_vx_along_y * t460
-            - minus_gleft_bar_vx_along_y * t499 + gdrive_vx_along_z * t688
-            - minus_gfoot_vx_along_z * t772;
-        let t779 = t775 + acceleration[0] * parameters[99]
+                * (t719 - parameters[92] * t543 - parameters[93] * t571);
+        let t734 = parameters[72] * t543 - parameters[71] * minus_rate_dot_foot_along_z
+            - parameters[73] * t539 + t691 + t725 + parameters[96] * t645
+            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t634
+            - t481 * t647;
+        let t737 = t175 + gdrive_vx_along_y * t351 - minus_gfoot_vx_along_y * t435
+            - minus_gleft_bar_vx_along_y * t474 + gdrive_vx_along_z * t650
+            - minus_gfoot_vx_along_z * t734;
+        let t741 = t737 + acceleration[0] * parameters[99]
             + acceleration[0] * parameters[100];
-        let t783 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t745 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t783, 1.0, "actuators")?;
-        let t784 = 1.0 / t783;
-        let t788 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t789 = t788 * t784;
-        let t795 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t788 * t789;
-        ::overact::guard::platform(t795, 1.0, "actuators")?;
-        let t796 = 1.0 / t795;
-        let t806 = t28 - t112;
-        let t814 = parameters[10] * t124 - parameters[9] * t126 + parameters[11] * t806
-            + parameters[12] * t127 - parameters[13] * t90 + parameters[14] * t126;
-        let t827 = t92 - t28;
-        let t831 = parameters[9] * t123 + parameters[10] * t128 - parameters[11] * t109
-            - parameters[12] * t122 + parameters[13] * t827 + parameters[14] * t122;
-        let t837 = c_left_bar_along_x
-            * (t814 + parameters[15] * t77 + parameters[17] * t101)
+        ::overact::guard::platform(t745, 1.0, "actuators")?;
+        let t746 = 1.0 / t745;
+        let t749 = gdrive_vy_along_x + gdrive_vx_along_y + t491;
+        let t750 = t749 * t746;
+        let t756 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t749 * t750;
+        ::overact::guard::platform(t756, 1.0, "actuators")?;
+        let t757 = 1.0 / t756;
+        let t767 = t26 - t100;
+        let t775 = parameters[10] * t112 - parameters[9] * t114 + parameters[11] * t767
+            + parameters[12] * t115 - parameters[13] * t78 + parameters[14] * t114;
+        let t788 = t80 - t26;
+        let t792 = parameters[9] * t111 + parameters[10] * t116 - parameters[11] * t98
+            - parameters[12] * t110 + parameters[13] * t788 + parameters[14] * t110;
+        let t798 = c_left_bar_along_x
+            * (t775 + parameters[15] * t65 + parameters[17] * t89)
             - minus_s_left_bar_along_x
-                * (t831 - parameters[16] * t77 - parameters[17] * t107);
-        let t849 = parameters[20] * t124 - parameters[19] * t126 + parameters[21] * t806
-            + parameters[22] * t127 - parameters[23] * t90 + parameters[24] * t126;
-        let t865 = parameters[19] * t123 + parameters[20] * t128 - parameters[21] * t109
-            - parameters[22] * t122 + parameters[23] * t827 + parameters[24] * t122;
-        let t871 = c_left_bar_along_x
-            * (t849 + parameters[25] * t77 + parameters[27] * t101)
+                * (t792 - parameters[16] * t65 - parameters[17] * t96);
+        let t810 = parameters[20] * t112 - parameters[19] * t114 + parameters[21] * t767
+            + parameters[22] * t115 - parameters[23] * t78 + parameters[24] * t114;
+        let t826 = parameters[19] * t111 + parameters[20] * t116 - parameters[21] * t98
+            - parameters[22] * t110 + parameters[23] * t788 + parameters[24] * t110;
+        let t832 = c_left_bar_along_x
+            * (t810 + parameters[25] * t65 + parameters[27] * t89)
             - minus_s_left_bar_along_x
-                * (t865 - parameters[26] * t77 - parameters[27] * t107);
-        let t880 = parameters[6] * t77 - parameters[5] * minus_rate_dot_foot_along_x
-            - parameters[7] * t73 + t837 + t871 + parameters[30] * t182
-            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t171
-            - t4 * t184;
-        let t888 = t613 - t596;
-        let t898 = parameters[75] * t593 + parameters[76] * t888 + parameters[77] * t617
-            - parameters[78] * t593 - parameters[79] * t601
+                * (t826 - parameters[26] * t65 - parameters[27] * t96);
+        let t841 = parameters[6] * t65 - parameters[5] * minus_rate_dot_foot_along_x
+            - parameters[7] * t61 + t798 + t832 + parameters[30] * t170
+            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t159
+            - t4 * t172;
+        let t849 = t575 - t558;
+        let t859 = parameters[75] * t555 + parameters[76] * t849 + parameters[77] * t579
+            - parameters[78] * t555 - parameters[79] * t562
             - parameters[80] * minus_rate_dot_left_bar_along_z;
-        let t913 = parameters[85] * t593 + parameters[86] * t888 + parameters[87] * t617
-            - parameters[88] * t593 - parameters[89] * t601
+        let t874 = parameters[85] * t555 + parameters[86] * t849 + parameters[87] * t579
+            - parameters[88] * t555 - parameters[89] * t562
             - parameters[90] * minus_rate_dot_left_bar_along_z;
-        let t923 = t898 + parameters[81] * t608 - parameters[82] * t604 + t913
-            + parameters[91] * t608 - parameters[92] * t604 + pose[1] * t677
-            - t507 * (acceleration[1] * parameters[98]);
-        let t926 = gdrive_vy_along_x * t187 - minus_gfoot_vy_along_x * t880 + t376
-            + gdrive_vy_along_z * t688 - minus_gfoot_vy_along_z * t772
-            - minus_gleft_bar_vy_along_z * t923;
-        let t932 = t926 + acceleration[1] * parameters[99]
-            + acceleration[1] * parameters[100] - t779 * t789;
-        let t939 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z;
-        let t940 = t939 * t784;
-        let t942 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t788 * t940;
-        let t943 = t942 * t796;
-        let t951 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t939 * t940 - t942 * t943;
-        ::overact::guard::platform(t951, 1.0, "actuators")?;
-        let t956 = t112 - t92;
-        let t966 = parameters[9] * t89 + parameters[10] * t956 + parameters[11] * t116
-            - parameters[12] * t89 - parameters[13] * t96
+        let t884 = t859 + parameters[81] * t571 - parameters[82] * t565 + t874
+            + parameters[91] * t571 - parameters[92] * t565 + pose[1] * t639
+            - t481 * (acceleration[1] * parameters[98]);
+        let t887 = gdrive_vy_along_x * t175 - minus_gfoot_vy_along_x * t841 + t351
+            + gdrive_vy_along_z * t650 - minus_gfoot_vy_along_z * t734
+            - minus_gleft_bar_vy_along_z * t884;
+        let t893 = t887 + acceleration[1] * parameters[99]
+            + acceleration[1] * parameters[100] - t741 * t750;
+        let t898 = gdrive_vz_along_x + t195 + gdrive_vx_along_z;
+        let t899 = t898 * t746;
+        let t901 = t17 + gdrive_vz_along_y + gdrive_vy_along_z - t749 * t899;
+        let t902 = t901 * t757;
+        let t907 = t100 - t80;
+        let t917 = parameters[9] * t77 + parameters[10] * t907 + parameters[11] * t104
+            - parameters[12] * t77 - parameters[13] * t84
             - parameters[14] * minus_rate_dot_left_bar_along_x;
-        let t981 = parameters[19] * t89 + parameters[20] * t956 + parameters[21] * t116
-            - parameters[22] * t89 - parameters[23] * t96
+        let t932 = parameters[19] * t77 + parameters[20] * t907 + parameters[21] * t104
+            - parameters[22] * t77 - parameters[23] * t84
             - parameters[24] * minus_rate_dot_left_bar_along_x;
-        let t990 = c_left_bar_along_x * t169 - minus_s_left_bar_along_x * t166;
-        let t994 = t966 + parameters[15] * t107 - parameters[16] * t101 + t981
-            + parameters[25] * t107 - parameters[26] * t101 + pose[2] * t176
-            + t4 * (parameters[32] * t990);
-        let t1001 = gdrive_vz_along_x * t187 - minus_gfoot_vz_along_x * t880
-            - minus_gleft_bar_vz_along_x * t994 + gdrive_vz_along_y * t376
-            - minus_gfoot_vz_along_y * t460 + t688;
-        let t1010 = (t1001 - (parameters[99] * t990 + parameters[100] * t990)
-            - t779 * t940 - t943 * t932) / t951;
-        let t1012 = t796 * t932 - t943 * t1010;
-        let t1016 = t779 * t784 - t789 * t1012 - t940 * t1010;
+        let t939 = -9.81 - acceleration[2];
+        let t943 = t917 + parameters[15] * t96 - parameters[16] * t89 + t932
+            + parameters[25] * t96 - parameters[26] * t89 + pose[2] * t164
+            + t4 * (parameters[32] * t939);
+        let t950 = gdrive_vz_along_x * t175 - minus_gfoot_vz_along_x * t841
+            - minus_gleft_bar_vz_along_x * t943 + gdrive_vz_along_y * t351
+            - minus_gfoot_vz_along_y * t435 + t650;
+        let t966 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t898 * t899 - t901 * t902;
+        ::overact::guard::platform(t966, 1.0, "actuators")?;
+        let t967 = (t950 - (parameters[99] * t939 + parameters[100] * t939) - t741 * t899
+            - t902 * t893) / t966;
+        let t969 = t757 * t893 - t902 * t967;
+        let t973 = t741 * t746 - t750 * t969 - t899 * t967;
         Ok([
-            t1016 + gdrive_vy_along_x * t1012 + gdrive_vz_along_x * t1010,
-            gdrive_vx_along_y * t1016 + t1012 + gdrive_vz_along_y * t1010,
-            gdrive_vx_along_z * t1016 + gdrive_vy_along_z * t1012 + t1010,
+            t973 + gdrive_vy_along_x * t969 + gdrive_vz_along_x * t967,
+            gdrive_vx_along_y * t973 + t969 + gdrive_vz_along_y * t967,
+            gdrive_vx_along_z * t973 + gdrive_vy_along_z * t969 + t967,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -7123,7 +6453,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 1011 operations (436 additions, 566 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 1023 intermediates.
+    /// 974 operations (430 additions, 535 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 986 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7134,440 +6464,427 @@ impl Orthoglide {
         acceleration: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let [(s_left_bar_along_x, c_left_bar_along_x),
-        (minus_c_foot_along_x, s_foot_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        let [(minus_c_foot_along_x, s_foot_along_x),
+        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
         (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[2], joints[1], joints[5], joints[6], joints[9], joints[10],
+            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
         ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t2 = 0.31 * s_left_bar_along_x;
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
         let t6 = 1.0 / t5;
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x * t6;
+        let t8 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t8;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t12 = 0.31 * s_left_bar_along_x;
         let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
-        let t10 = 1.0 / c_left_bar_along_x;
+        let t15 = s_foot_along_x * s_left_bar_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_c_foot_along_x * s_left_bar_along_x * t10);
+            * (minus_gdrive_vy_along_x * (t15 * t8));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t10;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t17 = minus_c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t2 * (minus_rate_foot_along_x * t17);
-        let t22 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t24 = t17 * t17 + t22 * t22;
-        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t26 = t24 + t25;
-        let t31 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t31 * t6;
-        let t33 = 0.31 * t31;
-        let t36 = t2 * (minus_rate_foot_along_x * t22);
-        let t39 = acceleration[1] - (t33 * t26 + t36 + t36);
-        let t43 = s_foot_along_x * s_left_bar_along_x;
-        let minus_gdrive_vz_along_x = t33 * minus_gfoot_vz_along_x + t43 * t10;
-        let t47 = t2 * minus_rate_foot_along_x;
-        let t50 = acceleration[2] - (t2 * t26 - minus_rate_foot_along_x * t47);
-        let rate_dot_drive_along_x = acceleration[0] - (t19 - 0.31 * t5 * t26 + t19)
-            - minus_gdrive_vy_along_x * t39 - minus_gdrive_vz_along_x * t50;
+        let t21 = t12 * minus_rate_foot_along_x;
+        let t22 = s_foot_along_x * minus_rate_left_bar_along_x * t21;
+        let t23 = minus_gdrive_vy_along_x * t22;
+        let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t26 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t28 = 0.31 * t5 * (t25 + t26);
+        let t35 = acceleration[1] - (t28 * minus_gdrive_vy_along_x + t22 + t22);
+        let minus_gdrive_vz_along_x = s_left_bar_along_x * t6;
+        let t40 = acceleration[2] - t12 * t25;
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - t28 + t23)
+            - minus_gdrive_vy_along_x * t35 - minus_gdrive_vz_along_x * t40;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t39
-            + minus_gfoot_vz_along_x * t50;
-        let t71 = s_foot_along_x * rate_dot_drive_along_x;
-        let t78 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t82 = s_foot_along_x
-            * (parameters[7] * minus_rate_dot_foot_along_x - parameters[6] * t25
-                + parameters[8] * t71)
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
+            + minus_gfoot_vz_along_x * t40;
+        let t61 = s_foot_along_x * rate_dot_drive_along_x;
+        let t68 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t72 = s_foot_along_x
+            * (parameters[7] * minus_rate_dot_foot_along_x - parameters[6] * t26
+                + parameters[8] * t61)
             + minus_c_foot_along_x
-                * (parameters[6] * minus_rate_dot_foot_along_x + parameters[7] * t25
-                    + parameters[8] * t78);
-        let t84 = 3.225806451612903 * t47;
-        let t85 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t86 = t84 * t85;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t50;
-        let t88 = t86 + minus_rate_dot_left_bar_along_x;
-        let t90 = t85 * t85;
-        let t91 = t90 + t24;
-        let t94 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t99 = c_left_bar_along_x * t71 - 9.81 * s_left_bar_along_x;
-        let t103 = t86 - minus_rate_dot_left_bar_along_x;
-        let t106 = 10.40582726326743 * (t47 * t47);
-        let t107 = t106 + t24;
-        let t110 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t115 = s_left_bar_along_x * t71 + 9.81 * c_left_bar_along_x;
-        let t119 = t5
-            * (parameters[16] * t88 - parameters[15] * t91 - parameters[17] * t94
-                + parameters[18] * t99)
-            - t43
-                * (parameters[15] * t103 - parameters[16] * t107 + parameters[17] * t110
-                    - parameters[18] * t115);
-        let t120 = minus_rate_left_bar_along_x * t84;
-        let t121 = t94 + t120;
-        let t122 = t120 + t121;
-        let t124 = minus_rate_left_bar_along_x * t85;
-        let t125 = t124 - t110;
-        let t126 = t124 + t125;
-        let t135 = parameters[0] * rate_dot_drive_along_x
+                * (parameters[6] * minus_rate_dot_foot_along_x + parameters[7] * t26
+                    + parameters[8] * t68);
+        let t74 = 3.225806451612903 * t21;
+        let t75 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t76 = t74 * t75;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
+        let t78 = t76 + minus_rate_dot_left_bar_along_x;
+        let t80 = t75 * t75;
+        let t81 = t80 + t25;
+        let t84 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t89 = c_left_bar_along_x * t61 - 9.81 * s_left_bar_along_x;
+        let t93 = t76 - minus_rate_dot_left_bar_along_x;
+        let t95 = t26 - t80;
+        let t96 = t95 + t25;
+        let t99 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t104 = s_left_bar_along_x * t61 + 9.81 * c_left_bar_along_x;
+        let t108 = t5
+            * (parameters[16] * t78 - parameters[15] * t81 - parameters[17] * t84
+                + parameters[18] * t89)
+            - t15
+                * (parameters[15] * t93 - parameters[16] * t96 + parameters[17] * t99
+                    - parameters[18] * t104);
+        let t109 = minus_rate_left_bar_along_x * t74;
+        let t110 = t84 + t109;
+        let t111 = t109 + t110;
+        let t113 = minus_rate_left_bar_along_x * t75;
+        let t114 = t113 - t99;
+        let t115 = t113 + t114;
+        let t124 = parameters[0] * rate_dot_drive_along_x
             + parameters[1] * rate_dot_drive_along_x + parameters[2] * rate_drive_along_x
             + ::overact::math::signed(parameters[3], rate_drive_along_x) + parameters[4]
-            + t82 + t119
+            + t72 + t108
             + minus_c_foot_along_x
-                * (parameters[15] * t122 + parameters[16] * t126 - parameters[17] * t25
-                    + parameters[18] * t78);
-        let t152 = t5
-            * (parameters[26] * t88 - parameters[25] * t91 - parameters[27] * t94
-                + parameters[28] * t99)
-            - t43
-                * (parameters[25] * t103 - parameters[26] * t107 + parameters[27] * t110
-                    - parameters[28] * t115);
-        let t162 = t135 + t152
+                * (parameters[15] * t111 + parameters[16] * t115 - parameters[17] * t26
+                    + parameters[18] * t68);
+        let t141 = t5
+            * (parameters[26] * t78 - parameters[25] * t81 - parameters[27] * t84
+                + parameters[28] * t89)
+            - t15
+                * (parameters[25] * t93 - parameters[26] * t96 + parameters[27] * t99
+                    - parameters[28] * t104);
+        let t151 = t124 + t141
             + minus_c_foot_along_x
-                * (parameters[25] * t122 + parameters[26] * t126 - parameters[27] * t25
-                    + parameters[28] * t78);
-        let t164 = t99 - 0.31 * t91;
-        let t167 = 0.31 * t103 - t115;
-        let t169 = c_left_bar_along_x * t164 - s_left_bar_along_x * t167;
-        let t174 = parameters[32] * t169
-            - (parameters[30] * t25 + parameters[31] * minus_rate_dot_foot_along_x);
-        let t180 = t78 + 0.31 * t122;
-        let t182 = parameters[30] * minus_rate_dot_foot_along_x - parameters[31] * t25
-            + parameters[32] * t180;
-        let t185 = t162 + s_foot_along_x * t174 + minus_c_foot_along_x * t182;
-        let t190 = minus_c_foot_along_y * c_left_bar_along_y;
-        let t191 = 0.31 * t190;
-        let t192 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t192, 1.0, "along_y")?;
-        let t193 = 1.0 / t192;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t193;
-        let t196 = 1.0 / c_left_bar_along_y;
+                * (parameters[25] * t111 + parameters[26] * t115 - parameters[27] * t26
+                    + parameters[28] * t68);
+        let t158 = c_left_bar_along_x * (t89 - 0.31 * t81)
+            - s_left_bar_along_x * (0.31 * t93 - t104);
+        let t163 = parameters[32] * t158
+            - (parameters[30] * t26 + parameters[31] * minus_rate_dot_foot_along_x);
+        let t169 = t68 + 0.31 * t111;
+        let t171 = parameters[30] * minus_rate_dot_foot_along_x - parameters[31] * t26
+            + parameters[32] * t169;
+        let t174 = t151 + s_foot_along_x * t163 + minus_c_foot_along_x * t171;
+        let t179 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t179, 1.0, "along_y")?;
+        let t180 = 1.0 / t179;
+        let minus_gdrive_vx_along_y = t180 * s_left_bar_along_y;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t180;
+        let t184 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t184;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t188 = 0.31 * s_left_bar_along_y;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t180;
+        let t190 = s_foot_along_y * s_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_c_foot_along_y * s_left_bar_along_y * t196);
-        let t200 = s_foot_along_y * s_left_bar_along_y;
-        let minus_gdrive_vx_along_y = t191 * minus_gfoot_vx_along_y + t200 * t196;
-        let t203 = 0.31 * s_left_bar_along_y;
+            * (t190 * t184 * minus_gdrive_vz_along_y);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t196;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t209 = minus_c_foot_along_y * minus_rate_left_bar_along_y;
-        let t211 = t203 * (minus_rate_foot_along_y * t209);
-        let t213 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t216 = s_foot_along_y * minus_rate_left_bar_along_y;
-        let t218 = t213 + t209 * t209 + t216 * t216;
-        let t224 = t203 * minus_rate_foot_along_y;
-        let t227 = acceleration[0] - (t203 * t218 - minus_rate_foot_along_y * t224);
-        let minus_gdrive_vz_along_y = t190 * t193;
-        let t233 = t203 * (minus_rate_foot_along_y * t216);
-        let t236 = acceleration[2] - (t191 * t218 + t233 + t233);
-        let rate_dot_drive_along_y = acceleration[1] - (t211 - 0.31 * t192 * t218 + t211)
-            - minus_gdrive_vx_along_y * t227 - minus_gdrive_vz_along_y * t236;
+        let t197 = t188 * minus_rate_foot_along_y;
+        let t198 = s_foot_along_y * minus_rate_left_bar_along_y * t197;
+        let t199 = minus_gdrive_vz_along_y * t198;
+        let t201 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t202 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t204 = 0.31 * t179 * (t201 + t202);
+        let t209 = acceleration[0] - t188 * t202;
+        let t215 = acceleration[2] - (t204 * minus_gdrive_vz_along_y + t198 + t198);
+        let rate_dot_drive_along_y = acceleration[1] - (t199 - t204 + t199)
+            - minus_gdrive_vx_along_y * t209 - minus_gdrive_vz_along_y * t215;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t227
-            + minus_gfoot_vz_along_y * t236;
-        let t259 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t268 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t272 = s_foot_along_y
-            * (parameters[40] * minus_rate_dot_foot_along_y - parameters[39] * t213
-                + parameters[41] * t259)
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t209
+            + minus_gfoot_vz_along_y * t215;
+        let t238 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t247 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
+        let t251 = s_foot_along_y
+            * (parameters[40] * minus_rate_dot_foot_along_y - parameters[39] * t201
+                + parameters[41] * t238)
             + minus_c_foot_along_y
-                * (parameters[39] * minus_rate_dot_foot_along_y + parameters[40] * t213
-                    + parameters[41] * t268);
-        let t274 = 3.225806451612903 * t224;
-        let t275 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t276 = t274 * t275;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t227;
-        let t278 = t276 + minus_rate_dot_left_bar_along_y;
-        let t280 = t275 * t275;
-        let t281 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t282 = t280 + t281;
-        let t285 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t288 = c_left_bar_along_y * t259;
-        let t292 = t276 - minus_rate_dot_left_bar_along_y;
-        let t295 = 10.40582726326743 * (t224 * t224);
-        let t296 = t295 + t281;
-        let t299 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t302 = s_left_bar_along_y * t259;
-        let t306 = t192
-            * (parameters[49] * t278 - parameters[48] * t282 - parameters[50] * t285
-                + parameters[51] * t288)
-            - t200
-                * (parameters[48] * t292 - parameters[49] * t296 + parameters[50] * t299
-                    - parameters[51] * t302);
-        let t307 = minus_rate_left_bar_along_y * t274;
-        let t308 = t285 + t307;
-        let t309 = t307 + t308;
-        let t311 = minus_rate_left_bar_along_y * t275;
-        let t312 = t311 - t299;
-        let t313 = t311 + t312;
-        let t322 = parameters[33] * rate_dot_drive_along_y
+                * (parameters[39] * minus_rate_dot_foot_along_y + parameters[40] * t201
+                    + parameters[41] * t247);
+        let t253 = 3.225806451612903 * t197;
+        let t254 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t255 = t253 * t254;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t209;
+        let t257 = t255 + minus_rate_dot_left_bar_along_y;
+        let t259 = t254 * t254;
+        let t260 = t259 + t202;
+        let t263 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t266 = c_left_bar_along_y * t238;
+        let t270 = t255 - minus_rate_dot_left_bar_along_y;
+        let t272 = t201 - t259;
+        let t273 = t272 + t202;
+        let t276 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t279 = s_left_bar_along_y * t238;
+        let t283 = t179
+            * (parameters[49] * t257 - parameters[48] * t260 - parameters[50] * t263
+                + parameters[51] * t266)
+            - t190
+                * (parameters[48] * t270 - parameters[49] * t273 + parameters[50] * t276
+                    - parameters[51] * t279);
+        let t284 = minus_rate_left_bar_along_y * t253;
+        let t285 = t263 + t284;
+        let t286 = t284 + t285;
+        let t288 = minus_rate_left_bar_along_y * t254;
+        let t289 = t288 - t276;
+        let t290 = t288 + t289;
+        let t299 = parameters[33] * rate_dot_drive_along_y
             + parameters[34] * rate_dot_drive_along_y
             + parameters[35] * rate_drive_along_y
             + ::overact::math::signed(parameters[36], rate_drive_along_y)
-            + parameters[37] + t272 + t306
+            + parameters[37] + t251 + t283
             + minus_c_foot_along_y
-                * (parameters[48] * t309 + parameters[49] * t313 - parameters[50] * t213
-                    + parameters[51] * t268);
-        let t339 = t192
-            * (parameters[59] * t278 - parameters[58] * t282 - parameters[60] * t285
-                + parameters[61] * t288)
-            - t200
-                * (parameters[58] * t292 - parameters[59] * t296 + parameters[60] * t299
-                    - parameters[61] * t302);
-        let t349 = t322 + t339
+                * (parameters[48] * t286 + parameters[49] * t290 - parameters[50] * t201
+                    + parameters[51] * t247);
+        let t316 = t179
+            * (parameters[59] * t257 - parameters[58] * t260 - parameters[60] * t263
+                + parameters[61] * t266)
+            - t190
+                * (parameters[58] * t270 - parameters[59] * t273 + parameters[60] * t276
+                    - parameters[61] * t279);
+        let t326 = t299 + t316
             + minus_c_foot_along_y
-                * (parameters[58] * t309 + parameters[59] * t313 - parameters[60] * t213
-                    + parameters[61] * t268);
-        let t356 = c_left_bar_along_y * (t288 - 0.31 * t282)
-            - s_left_bar_along_y * (0.31 * t292 - t302);
-        let t361 = parameters[65] * t356
-            - (parameters[63] * t213 + parameters[64] * minus_rate_dot_foot_along_y);
-        let t367 = t268 + 0.31 * t309;
-        let t369 = parameters[63] * minus_rate_dot_foot_along_y - parameters[64] * t213
-            + parameters[65] * t367;
-        let t372 = t349 + s_foot_along_y * t361 + minus_c_foot_along_y * t369;
-        let t381 = t280 - t281;
-        let t385 = parameters[42] * t312 - parameters[43] * t309 + parameters[44] * t292
-            - parameters[45] * t311 + parameters[46] * t381 + parameters[47] * t311;
-        let t394 = t281 - t295;
-        let t402 = parameters[42] * t307 + parameters[43] * t313 + parameters[44] * t394
-            - parameters[45] * t308 - parameters[46] * t278 - parameters[47] * t307;
-        let t408 = s_left_bar_along_y
-            * (t385 + parameters[49] * t268 + parameters[50] * t302)
+                * (parameters[58] * t286 + parameters[59] * t290 - parameters[60] * t201
+                    + parameters[61] * t247);
+        let t333 = c_left_bar_along_y * (t266 - 0.31 * t260)
+            - s_left_bar_along_y * (0.31 * t270 - t279);
+        let t338 = parameters[65] * t333
+            - (parameters[63] * t201 + parameters[64] * minus_rate_dot_foot_along_y);
+        let t344 = t247 + 0.31 * t286;
+        let t346 = parameters[63] * minus_rate_dot_foot_along_y - parameters[64] * t201
+            + parameters[65] * t344;
+        let t349 = t326 + s_foot_along_y * t338 + minus_c_foot_along_y * t346;
+        let t358 = t259 - t202;
+        let t362 = parameters[42] * t289 - parameters[43] * t286 + parameters[44] * t270
+            - parameters[45] * t288 + parameters[46] * t358 + parameters[47] * t288;
+        let t371 = t202 - t272;
+        let t379 = parameters[42] * t284 + parameters[43] * t290 + parameters[44] * t371
+            - parameters[45] * t285 - parameters[46] * t257 - parameters[47] * t284;
+        let t385 = s_left_bar_along_y
+            * (t362 + parameters[49] * t247 + parameters[50] * t279)
             + c_left_bar_along_y
-                * (t402 - parameters[48] * t268 + parameters[50] * t288);
-        let t425 = parameters[52] * t312 - parameters[53] * t309 + parameters[54] * t292
-            - parameters[55] * t311 + parameters[56] * t381 + parameters[57] * t311;
-        let t441 = parameters[52] * t307 + parameters[53] * t313 + parameters[54] * t394
-            - parameters[55] * t308 - parameters[56] * t278 - parameters[57] * t307;
-        let t447 = s_left_bar_along_y
-            * (t425 + parameters[59] * t268 + parameters[60] * t302)
+                * (t379 - parameters[48] * t247 + parameters[50] * t266);
+        let t402 = parameters[52] * t289 - parameters[53] * t286 + parameters[54] * t270
+            - parameters[55] * t288 + parameters[56] * t358 + parameters[57] * t288;
+        let t418 = parameters[52] * t284 + parameters[53] * t290 + parameters[54] * t371
+            - parameters[55] * t285 - parameters[56] * t257 - parameters[57] * t284;
+        let t424 = s_left_bar_along_y
+            * (t402 + parameters[59] * t247 + parameters[60] * t279)
             + c_left_bar_along_y
-                * (t441 - parameters[58] * t268 + parameters[60] * t288);
-        let t454 = 0.31 * c_left_bar_along_y;
-        let t457 = t408
-            - (parameters[38] * minus_rate_dot_foot_along_y + parameters[39] * t268
-                + parameters[40] * t259) + t447 + parameters[64] * t356
-            - (parameters[62] * minus_rate_dot_foot_along_y + parameters[63] * t367)
-            - t454 * t369;
-        let t460 = t295 - t280;
-        let t471 = parameters[43] * t460 - parameters[42] * t276 - parameters[44] * t299
-            + parameters[45] * t276 - parameters[46] * t285
+                * (t418 - parameters[58] * t247 + parameters[60] * t266);
+        let t431 = 0.31 * c_left_bar_along_y;
+        let t434 = t385
+            - (parameters[38] * minus_rate_dot_foot_along_y + parameters[39] * t247
+                + parameters[40] * t238) + t424 + parameters[64] * t333
+            - (parameters[62] * minus_rate_dot_foot_along_y + parameters[63] * t344)
+            - t431 * t346;
+        let t437 = t272 - t259;
+        let t448 = parameters[43] * t437 - parameters[42] * t255 - parameters[44] * t276
+            + parameters[45] * t255 - parameters[46] * t263
             - parameters[47] * minus_rate_dot_left_bar_along_y;
-        let t486 = parameters[53] * t460 - parameters[52] * t276 - parameters[54] * t299
-            + parameters[55] * t276 - parameters[56] * t285
+        let t463 = parameters[53] * t437 - parameters[52] * t255 - parameters[54] * t276
+            + parameters[55] * t255 - parameters[56] * t263
             - parameters[57] * minus_rate_dot_left_bar_along_y;
-        let t496 = t471 - parameters[48] * t302 - parameters[49] * t288 + t486
-            - parameters[58] * t302 - parameters[59] * t288
-            - (t203 * t361 + t454 * (acceleration[0] * parameters[65]));
-        let t504 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t505 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t505, 1.0, "along_z")?;
-        let t506 = 1.0 / t505;
-        let minus_gdrive_vx_along_z = t504 * t506;
-        let t508 = 0.31 * s_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t506;
-        let t512 = 1.0 / c_left_bar_along_z;
+        let t473 = t448 - parameters[48] * t279 - parameters[49] * t266 + t463
+            - parameters[58] * t279 - parameters[59] * t266
+            - (t188 * t338 + t431 * (acceleration[0] * parameters[65]));
+        let t482 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t482, 1.0, "along_z")?;
+        let t483 = 1.0 / t482;
+        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z * t483;
+        let t485 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t485;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t489 = 0.31 * s_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t483;
+        let t492 = s_foot_along_z * s_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_c_foot_along_z * s_left_bar_along_z * t512);
+            * (minus_gdrive_vx_along_z * (t492 * t485));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t512;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t519 = minus_c_foot_along_z * minus_rate_left_bar_along_z;
-        let t521 = t508 * (minus_rate_foot_along_z * t519);
-        let t523 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let t525 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t528 = t523 * t523 + t525 + t519 * t519;
-        let t533 = 0.31 * t504;
-        let t536 = t508 * (minus_rate_foot_along_z * t523);
-        let t539 = acceleration[0] - (t533 * t528 + t536 + t536);
-        let t542 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t533 * minus_gfoot_vy_along_z + t542 * t512;
-        let t546 = t508 * minus_rate_foot_along_z;
-        let t549 = acceleration[1] - (t508 * t528 - minus_rate_foot_along_z * t546);
-        let rate_dot_drive_along_z = acceleration[2] - (t521 - 0.31 * t505 * t528 + t521)
-            - (minus_gdrive_vx_along_z * t539 + minus_gdrive_vy_along_z * t549);
-        let t553 = 9.81 + rate_dot_drive_along_z;
+        let t498 = t489 * minus_rate_foot_along_z;
+        let t499 = s_foot_along_z * minus_rate_left_bar_along_z * t498;
+        let t500 = minus_gdrive_vx_along_z * t499;
+        let t502 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t503 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t505 = 0.31 * t482 * (t502 + t503);
+        let t512 = acceleration[0] - (minus_gdrive_vx_along_z * t505 + t499 + t499);
+        let minus_gdrive_vy_along_z = t483 * s_left_bar_along_z;
+        let t516 = acceleration[1] - t489 * t503;
+        let rate_dot_drive_along_z = acceleration[2] - (t500 - t505 + t500)
+            - (minus_gdrive_vx_along_z * t512 + minus_gdrive_vy_along_z * t516);
+        let t520 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t539
-            + minus_gfoot_vy_along_z * t549;
-        let t572 = s_foot_along_z * t553;
-        let t579 = minus_c_foot_along_z * t553;
-        let t583 = s_foot_along_z
-            * (parameters[73] * minus_rate_dot_foot_along_z - parameters[72] * t525
-                + parameters[74] * t572)
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t512
+            + minus_gfoot_vy_along_z * t516;
+        let t539 = s_foot_along_z * t520;
+        let t546 = minus_c_foot_along_z * t520;
+        let t550 = s_foot_along_z
+            * (parameters[73] * minus_rate_dot_foot_along_z - parameters[72] * t502
+                + parameters[74] * t539)
             + minus_c_foot_along_z
-                * (parameters[72] * minus_rate_dot_foot_along_z + parameters[73] * t525
-                    + parameters[74] * t579);
-        let t585 = 3.225806451612903 * t546;
-        let t586 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t587 = t585 * t586;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t549;
-        let t589 = t587 + minus_rate_dot_left_bar_along_z;
-        let t591 = t586 * t586;
-        let t592 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t593 = t591 + t592;
-        let t596 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t599 = c_left_bar_along_z * t572;
-        let t603 = t587 - minus_rate_dot_left_bar_along_z;
-        let t606 = 10.40582726326743 * (t546 * t546);
-        let t607 = t606 + t592;
-        let t610 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t613 = s_left_bar_along_z * t572;
-        let t617 = t505
-            * (parameters[82] * t589 - parameters[81] * t593 - parameters[83] * t596
-                + parameters[84] * t599)
-            - t542
-                * (parameters[81] * t603 - parameters[82] * t607 + parameters[83] * t610
-                    - parameters[84] * t613);
-        let t618 = minus_rate_left_bar_along_z * t585;
-        let t619 = t596 + t618;
-        let t620 = t618 + t619;
-        let t622 = minus_rate_left_bar_along_z * t586;
-        let t623 = t622 - t610;
-        let t624 = t622 + t623;
-        let t633 = parameters[66] * t553 + parameters[67] * rate_dot_drive_along_z
+                * (parameters[72] * minus_rate_dot_foot_along_z + parameters[73] * t502
+                    + parameters[74] * t546);
+        let t552 = 3.225806451612903 * t498;
+        let t553 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t554 = t552 * t553;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t516;
+        let t556 = t554 + minus_rate_dot_left_bar_along_z;
+        let t558 = t553 * t553;
+        let t559 = t558 + t503;
+        let t562 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t565 = c_left_bar_along_z * t539;
+        let t569 = t554 - minus_rate_dot_left_bar_along_z;
+        let t571 = t502 - t558;
+        let t572 = t571 + t503;
+        let t575 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t578 = s_left_bar_along_z * t539;
+        let t582 = t482
+            * (parameters[82] * t556 - parameters[81] * t559 - parameters[83] * t562
+                + parameters[84] * t565)
+            - t492
+                * (parameters[81] * t569 - parameters[82] * t572 + parameters[83] * t575
+                    - parameters[84] * t578);
+        let t583 = minus_rate_left_bar_along_z * t552;
+        let t584 = t562 + t583;
+        let t585 = t583 + t584;
+        let t587 = minus_rate_left_bar_along_z * t553;
+        let t588 = t587 - t575;
+        let t589 = t587 + t588;
+        let t598 = parameters[66] * t520 + parameters[67] * rate_dot_drive_along_z
             + parameters[68] * rate_drive_along_z
             + ::overact::math::signed(parameters[69], rate_drive_along_z)
-            + parameters[70] + t583 + t617
+            + parameters[70] + t550 + t582
             + minus_c_foot_along_z
-                * (parameters[81] * t620 + parameters[82] * t624 - parameters[83] * t525
-                    + parameters[84] * t579);
-        let t650 = t505
-            * (parameters[92] * t589 - parameters[91] * t593 - parameters[93] * t596
-                + parameters[94] * t599)
-            - t542
-                * (parameters[91] * t603 - parameters[92] * t607 + parameters[93] * t610
-                    - parameters[94] * t613);
-        let t660 = t633 + t650
+                * (parameters[81] * t585 + parameters[82] * t589 - parameters[83] * t502
+                    + parameters[84] * t546);
+        let t615 = t482
+            * (parameters[92] * t556 - parameters[91] * t559 - parameters[93] * t562
+                + parameters[94] * t565)
+            - t492
+                * (parameters[91] * t569 - parameters[92] * t572 + parameters[93] * t575
+                    - parameters[94] * t578);
+        let t625 = t598 + t615
             + minus_c_foot_along_z
-                * (parameters[91] * t620 + parameters[92] * t624 - parameters[93] * t525
-                    + parameters[94] * t579);
-        let t667 = c_left_bar_along_z * (t599 - 0.31 * t593)
-            - s_left_bar_along_z * (0.31 * t603 - t613);
-        let t672 = parameters[98] * t667
-            - (parameters[96] * t525 + parameters[97] * minus_rate_dot_foot_along_z);
-        let t678 = t579 + 0.31 * t620;
-        let t680 = parameters[96] * minus_rate_dot_foot_along_z - parameters[97] * t525
-            + parameters[98] * t678;
-        let t683 = t660 + s_foot_along_z * t672 + minus_c_foot_along_z * t680;
-        let t692 = t591 - t592;
-        let t696 = parameters[75] * t623 - parameters[76] * t620 + parameters[77] * t603
-            - parameters[78] * t622 + parameters[79] * t692 + parameters[80] * t622;
-        let t705 = t592 - t606;
-        let t713 = parameters[75] * t618 + parameters[76] * t624 + parameters[77] * t705
-            - parameters[78] * t619 - parameters[79] * t589 - parameters[80] * t618;
-        let t719 = s_left_bar_along_z
-            * (t696 + parameters[82] * t579 + parameters[83] * t613)
+                * (parameters[91] * t585 + parameters[92] * t589 - parameters[93] * t502
+                    + parameters[94] * t546);
+        let t632 = c_left_bar_along_z * (t565 - 0.31 * t559)
+            - s_left_bar_along_z * (0.31 * t569 - t578);
+        let t637 = parameters[98] * t632
+            - (parameters[96] * t502 + parameters[97] * minus_rate_dot_foot_along_z);
+        let t643 = t546 + 0.31 * t585;
+        let t645 = parameters[96] * minus_rate_dot_foot_along_z - parameters[97] * t502
+            + parameters[98] * t643;
+        let t648 = t625 + s_foot_along_z * t637 + minus_c_foot_along_z * t645;
+        let t657 = t558 - t503;
+        let t661 = parameters[75] * t588 - parameters[76] * t585 + parameters[77] * t569
+            - parameters[78] * t587 + parameters[79] * t657 + parameters[80] * t587;
+        let t670 = t503 - t571;
+        let t678 = parameters[75] * t583 + parameters[76] * t589 + parameters[77] * t670
+            - parameters[78] * t584 - parameters[79] * t556 - parameters[80] * t583;
+        let t684 = s_left_bar_along_z
+            * (t661 + parameters[82] * t546 + parameters[83] * t578)
             + c_left_bar_along_z
-                * (t713 - parameters[81] * t579 + parameters[83] * t599);
-        let t736 = parameters[85] * t623 - parameters[86] * t620 + parameters[87] * t603
-            - parameters[88] * t622 + parameters[89] * t692 + parameters[90] * t622;
-        let t752 = parameters[85] * t618 + parameters[86] * t624 + parameters[87] * t705
-            - parameters[88] * t619 - parameters[89] * t589 - parameters[90] * t618;
-        let t758 = s_left_bar_along_z
-            * (t736 + parameters[92] * t579 + parameters[93] * t613)
+                * (t678 - parameters[81] * t546 + parameters[83] * t565);
+        let t701 = parameters[85] * t588 - parameters[86] * t585 + parameters[87] * t569
+            - parameters[88] * t587 + parameters[89] * t657 + parameters[90] * t587;
+        let t717 = parameters[85] * t583 + parameters[86] * t589 + parameters[87] * t670
+            - parameters[88] * t584 - parameters[89] * t556 - parameters[90] * t583;
+        let t723 = s_left_bar_along_z
+            * (t701 + parameters[92] * t546 + parameters[93] * t578)
             + c_left_bar_along_z
-                * (t752 - parameters[91] * t579 + parameters[93] * t599);
-        let t765 = 0.31 * c_left_bar_along_z;
-        let t768 = t719
-            - (parameters[71] * minus_rate_dot_foot_along_z + parameters[72] * t579
-                + parameters[73] * t572) + t758 + parameters[97] * t667
-            - (parameters[95] * minus_rate_dot_foot_along_z + parameters[96] * t678)
-            - t765 * t680;
-        let t771 = t185
-            - (minus_gdrive_vx_along_y * t372 + minus_gfoot_vx_along_y * t457
-                + minus_gleft_bar_vx_along_y * t496)
-            - (minus_gdrive_vx_along_z * t683 + minus_gfoot_vx_along_z * t768);
-        let t775 = t771 + acceleration[0] * parameters[99]
+                * (t717 - parameters[91] * t546 + parameters[93] * t565);
+        let t730 = 0.31 * c_left_bar_along_z;
+        let t733 = t684
+            - (parameters[71] * minus_rate_dot_foot_along_z + parameters[72] * t546
+                + parameters[73] * t539) + t723 + parameters[97] * t632
+            - (parameters[95] * minus_rate_dot_foot_along_z + parameters[96] * t643)
+            - t730 * t645;
+        let t736 = t174
+            - (minus_gdrive_vx_along_y * t349 + minus_gfoot_vx_along_y * t434
+                + minus_gleft_bar_vx_along_y * t473)
+            - (minus_gdrive_vx_along_z * t648 + minus_gfoot_vx_along_z * t733);
+        let t740 = t736 + acceleration[0] * parameters[99]
             + acceleration[0] * parameters[100];
-        let t779 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
+        let t744 = 1.0 + minus_gdrive_vx_along_y * minus_gdrive_vx_along_y
             + minus_gdrive_vx_along_z * minus_gdrive_vx_along_z;
-        ::overact::guard::platform(t779, 1.0, "actuators")?;
-        let t780 = 1.0 / t779;
-        let t784 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
+        ::overact::guard::platform(t744, 1.0, "actuators")?;
+        let t745 = 1.0 / t744;
+        let t749 = minus_gdrive_vx_along_z * minus_gdrive_vy_along_z
             - (minus_gdrive_vy_along_x + minus_gdrive_vx_along_y);
-        let t785 = t784 * t780;
-        let t791 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
-            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t784 * t785;
-        ::overact::guard::platform(t791, 1.0, "actuators")?;
-        let t792 = 1.0 / t791;
-        let t801 = t90 - t24;
-        let t805 = parameters[9] * t125 - parameters[10] * t122 + parameters[11] * t103
-            - parameters[12] * t124 + parameters[13] * t801 + parameters[14] * t124;
-        let t814 = t24 - t106;
-        let t822 = parameters[9] * t120 + parameters[10] * t126 + parameters[11] * t814
-            - parameters[12] * t121 - parameters[13] * t88 - parameters[14] * t120;
-        let t828 = s_left_bar_along_x
-            * (t805 + parameters[16] * t78 + parameters[17] * t115)
-            + c_left_bar_along_x * (t822 - parameters[15] * t78 + parameters[17] * t99);
-        let t845 = parameters[19] * t125 - parameters[20] * t122 + parameters[21] * t103
-            - parameters[22] * t124 + parameters[23] * t801 + parameters[24] * t124;
-        let t861 = parameters[19] * t120 + parameters[20] * t126 + parameters[21] * t814
-            - parameters[22] * t121 - parameters[23] * t88 - parameters[24] * t120;
-        let t867 = s_left_bar_along_x
-            * (t845 + parameters[26] * t78 + parameters[27] * t115)
-            + c_left_bar_along_x * (t861 - parameters[25] * t78 + parameters[27] * t99);
-        let t874 = 0.31 * c_left_bar_along_x;
-        let t877 = t828
-            - (parameters[5] * minus_rate_dot_foot_along_x + parameters[6] * t78
-                + parameters[7] * t71) + t867 + parameters[31] * t169
-            - (parameters[29] * minus_rate_dot_foot_along_x + parameters[30] * t180)
-            - t874 * t182;
-        let t884 = t606 - t591;
-        let t895 = parameters[76] * t884 - parameters[75] * t587 - parameters[77] * t610
-            + parameters[78] * t587 - parameters[79] * t596
+        let t750 = t749 * t745;
+        let t756 = minus_gdrive_vy_along_x * minus_gdrive_vy_along_x + 1.0
+            + minus_gdrive_vy_along_z * minus_gdrive_vy_along_z - t749 * t750;
+        ::overact::guard::platform(t756, 1.0, "actuators")?;
+        let t757 = 1.0 / t756;
+        let t766 = t80 - t25;
+        let t770 = parameters[9] * t114 - parameters[10] * t111 + parameters[11] * t93
+            - parameters[12] * t113 + parameters[13] * t766 + parameters[14] * t113;
+        let t779 = t25 - t95;
+        let t787 = parameters[9] * t109 + parameters[10] * t115 + parameters[11] * t779
+            - parameters[12] * t110 - parameters[13] * t78 - parameters[14] * t109;
+        let t793 = s_left_bar_along_x
+            * (t770 + parameters[16] * t68 + parameters[17] * t104)
+            + c_left_bar_along_x * (t787 - parameters[15] * t68 + parameters[17] * t89);
+        let t810 = parameters[19] * t114 - parameters[20] * t111 + parameters[21] * t93
+            - parameters[22] * t113 + parameters[23] * t766 + parameters[24] * t113;
+        let t826 = parameters[19] * t109 + parameters[20] * t115 + parameters[21] * t779
+            - parameters[22] * t110 - parameters[23] * t78 - parameters[24] * t109;
+        let t832 = s_left_bar_along_x
+            * (t810 + parameters[26] * t68 + parameters[27] * t104)
+            + c_left_bar_along_x * (t826 - parameters[25] * t68 + parameters[27] * t89);
+        let t839 = 0.31 * c_left_bar_along_x;
+        let t842 = t793
+            - (parameters[5] * minus_rate_dot_foot_along_x + parameters[6] * t68
+                + parameters[7] * t61) + t832 + parameters[31] * t158
+            - (parameters[29] * minus_rate_dot_foot_along_x + parameters[30] * t169)
+            - t839 * t171;
+        let t849 = t571 - t558;
+        let t860 = parameters[76] * t849 - parameters[75] * t554 - parameters[77] * t575
+            + parameters[78] * t554 - parameters[79] * t562
             - parameters[80] * minus_rate_dot_left_bar_along_z;
-        let t910 = parameters[86] * t884 - parameters[85] * t587 - parameters[87] * t610
-            + parameters[88] * t587 - parameters[89] * t596
+        let t875 = parameters[86] * t849 - parameters[85] * t554 - parameters[87] * t575
+            + parameters[88] * t554 - parameters[89] * t562
             - parameters[90] * minus_rate_dot_left_bar_along_z;
-        let t920 = t895 - parameters[81] * t613 - parameters[82] * t599 + t910
-            - parameters[91] * t613 - parameters[92] * t599
-            - (t508 * t672 + t765 * (acceleration[1] * parameters[98]));
-        let t923 = t372
-            - (minus_gdrive_vy_along_x * t185 + minus_gfoot_vy_along_x * t877)
-            - (minus_gdrive_vy_along_z * t683 + minus_gfoot_vy_along_z * t768
-                + minus_gleft_bar_vy_along_z * t920);
-        let t929 = t923 + acceleration[1] * parameters[99]
-            + acceleration[1] * parameters[100] - t775 * t785;
-        let t936 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
+        let t885 = t860 - parameters[81] * t578 - parameters[82] * t565 + t875
+            - parameters[91] * t578 - parameters[92] * t565
+            - (t489 * t637 + t730 * (acceleration[1] * parameters[98]));
+        let t888 = t349
+            - (minus_gdrive_vy_along_x * t174 + minus_gfoot_vy_along_x * t842)
+            - (minus_gdrive_vy_along_z * t648 + minus_gfoot_vy_along_z * t733
+                + minus_gleft_bar_vy_along_z * t885);
+        let t894 = t888 + acceleration[1] * parameters[99]
+            + acceleration[1] * parameters[100] - t740 * t750;
+        let t901 = minus_gdrive_vz_along_y * minus_gdrive_vx_along_y
             - minus_gdrive_vz_along_x - minus_gdrive_vx_along_z;
-        let t937 = t936 * t780;
-        let t939 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
-            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t784 * t937;
-        let t940 = t939 * t792;
-        let t948 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
-            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t936 * t937
-            - t939 * t940;
-        ::overact::guard::platform(t948, 1.0, "actuators")?;
-        let t952 = t106 - t90;
-        let t963 = parameters[10] * t952 - parameters[9] * t86 - parameters[11] * t110
-            + parameters[12] * t86 - parameters[13] * t94
+        let t902 = t901 * t745;
+        let t904 = minus_gdrive_vy_along_x * minus_gdrive_vz_along_x
+            - minus_gdrive_vz_along_y - minus_gdrive_vy_along_z - t749 * t902;
+        let t905 = t904 * t757;
+        let t909 = t95 - t80;
+        let t920 = parameters[10] * t909 - parameters[9] * t76 - parameters[11] * t99
+            + parameters[12] * t76 - parameters[13] * t84
             - parameters[14] * minus_rate_dot_left_bar_along_x;
-        let t978 = parameters[20] * t952 - parameters[19] * t86 - parameters[21] * t110
-            + parameters[22] * t86 - parameters[23] * t94
+        let t935 = parameters[20] * t909 - parameters[19] * t76 - parameters[21] * t99
+            + parameters[22] * t76 - parameters[23] * t84
             - parameters[24] * minus_rate_dot_left_bar_along_x;
-        let t986 = s_left_bar_along_x * t164 + c_left_bar_along_x * t167;
-        let t991 = t963 - parameters[15] * t115 - parameters[16] * t99 + t978
-            - parameters[25] * t115 - parameters[26] * t99
-            + t874 * (parameters[32] * t986) - t2 * t174;
-        let t998 = t683
-            - (minus_gdrive_vz_along_x * t185 + minus_gfoot_vz_along_x * t877
-                + minus_gleft_bar_vz_along_x * t991 + minus_gdrive_vz_along_y * t372
-                + minus_gfoot_vz_along_y * t457);
-        let t1007 = (t998 - (parameters[99] * t986 + parameters[100] * t986)
-            - t775 * t937 - t940 * t929) / t948;
-        let t1009 = t792 * t929 - t940 * t1007;
-        let t1013 = t775 * t780 - t785 * t1009 - t937 * t1007;
+        let t941 = -9.81 - acceleration[2];
+        let t946 = t920 - parameters[15] * t104 - parameters[16] * t89 + t935
+            - parameters[25] * t104 - parameters[26] * t89
+            + t839 * (parameters[32] * t941) - t12 * t163;
+        let t953 = t648
+            - (minus_gdrive_vz_along_x * t174 + minus_gfoot_vz_along_x * t842
+                + minus_gleft_bar_vz_along_x * t946 + minus_gdrive_vz_along_y * t349
+                + minus_gfoot_vz_along_y * t434);
+        let t969 = minus_gdrive_vz_along_x * minus_gdrive_vz_along_x
+            + minus_gdrive_vz_along_y * minus_gdrive_vz_along_y + 1.0 - t901 * t902
+            - t904 * t905;
+        ::overact::guard::platform(t969, 1.0, "actuators")?;
+        let t970 = (t953 - (parameters[99] * t941 + parameters[100] * t941) - t740 * t902
+            - t905 * t894) / t969;
+        let t972 = t757 * t894 - t905 * t970;
+        let t976 = t740 * t745 - t750 * t972 - t902 * t970;
         Ok([
-            t1013 - minus_gdrive_vy_along_x * t1009 - minus_gdrive_vz_along_x * t1007,
-            t1009 - minus_gdrive_vx_along_y * t1013 - minus_gdrive_vz_along_y * t1007,
-            t1007 - (minus_gdrive_vx_along_z * t1013 + minus_gdrive_vy_along_z * t1009),
+            t976 - minus_gdrive_vy_along_x * t972 - minus_gdrive_vz_along_x * t970,
+            t972 - minus_gdrive_vx_along_y * t976 - minus_gdrive_vz_along_y * t970,
+            t970 - (minus_gdrive_vx_along_z * t976 + minus_gdrive_vy_along_z * t972),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -7581,7 +6898,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 1064 operations (459 additions, 593 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1070 intermediates.
+    /// 1000 operations (439 additions, 550 multiplications, 11 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1006 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7593,478 +6910,458 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t2 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t1 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let t4 = 0.31 * c_left_bar_along_y;
         let minus_s_foot_along_y = pose[2] / t4;
-        let t7 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t9, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t9;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t13 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t13);
-        let t17 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t17 * t13;
-        let t24 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t24, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t24);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t26 = 0.31 * c_left_bar_along_z;
-        let minus_s_foot_along_z = pose[0] / t26;
-        let t29 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t29, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t29);
-        let t31 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t31, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t31;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t14 = t2 * t6;
+        let t15 = 1.0 - t14;
+        ::overact::guard::reach(t15, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t15);
+        let t17 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t17;
+        let t19 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t20 = t15 * t19;
+        let t21 = 1.0 - t20;
+        ::overact::guard::reach(t21, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t21);
+        let t23 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t23;
+        let t26 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t26, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t26);
+        let t28 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t28, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t28;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t35 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t32 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t35, 1.0, "actuators")?;
-        ::overact::guard::platform(t35, 1.0, "actuators")?;
-        ::overact::guard::platform(t35, 1.0, "actuators")?;
-        let t36 = 1.0 / t35;
-        let t47 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t47, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t47);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t49 = 0.31 * c_left_bar_along_x;
-        let minus_s_foot_along_x = pose[1] / t49;
-        let t52 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t52, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t52);
-        let t54 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t54, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t54;
+        ::overact::guard::platform(t32, 1.0, "actuators")?;
+        ::overact::guard::platform(t32, 1.0, "actuators")?;
+        ::overact::guard::platform(t32, 1.0, "actuators")?;
+        let t33 = 1.0 / t32;
+        let t42 = 1.0 - t19;
+        ::overact::guard::reach(t42, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t42);
+        let t44 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t44, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t44;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t61 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t61);
-        let t65 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t65 * t61;
-        let t72 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t73 = t72 * t36;
-        let t75 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t72 * t73;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        let t76 = 1.0 / t75;
-        let t77 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t77;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t77);
-        let t84 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t84 * t77;
+        let t48 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t53 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let t54 = gdrive_vy_along_x + gdrive_vx_along_y + t53;
+        let t55 = t54 * t33;
+        let t57 = t48 + gdrive_vy_along_z * gdrive_vy_along_z - t54 * t55;
+        ::overact::guard::platform(t57, 1.0, "actuators")?;
+        ::overact::guard::platform(t57, 1.0, "actuators")?;
+        ::overact::guard::platform(t57, 1.0, "actuators")?;
+        let t58 = 1.0 / t57;
+        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t94 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z;
-        let t95 = t94 * t36;
-        let t102 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t72 * t95;
-        let t103 = t102 * t76;
-        let t105 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t94 * t95 - t102 * t103;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t114 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        let t67 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t69 = gdrive_vz_along_x + t67 + gdrive_vx_along_z;
+        let t70 = t69 * t33;
+        let t73 = gdrive_vy_along_x * gdrive_vz_along_x;
+        let t77 = t73 + gdrive_vz_along_y + gdrive_vy_along_z - t54 * t70;
+        let t78 = t77 * t58;
+        let t80 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t69 * t70 - t77 * t78;
+        ::overact::guard::platform(t80, 1.0, "actuators")?;
+        ::overact::guard::platform(t80, 1.0, "actuators")?;
+        ::overact::guard::platform(t80, 1.0, "actuators")?;
+        let t81 = 1.0 / t80;
+        let t89 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t122 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t114 * t73;
-        let t125 = t106
+        let t97 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t89 * t55;
+        let t100 = t81
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t114 * t95 - t103 * t122);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t125;
-        let t127 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t129 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t131 = t127 * t127 + t129 * t129;
-        let t134 = t76 * t122 - t103 * t125;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t134
-            + minus_gfoot_vz_along_x * t125;
-        let t138 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t139 = t131 + t138;
-        let t142 = pose[2] * (minus_rate_foot_along_x * t129);
-        let t144 = pose[1] * t139 + t142 + t142;
-        let t147 = pose[2] * (minus_rate_foot_along_x * t127);
-        let t153 = pose[2] * minus_rate_foot_along_x;
-        let t156 = minus_rate_foot_along_x * t153 - pose[2] * t139;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * t144
-            - (t147 - 0.31 * t54 * t139 + t147) - gdrive_vz_along_x * t156;
-        let t159 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t165 = t114 * t36 - t73 * t134 - t95 * t125;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t165
-            + minus_gfoot_vz_along_y * t125;
-        let t169 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t13;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t165;
-        let t172 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t175 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t177 = t169 + t172 * t172 + t175 * t175;
-        let t180 = pose[0] * (minus_rate_foot_along_y * t175);
-        let t182 = pose[2] * t177 + t180 + t180;
-        let t184 = pose[0] * minus_rate_foot_along_y;
-        let t187 = minus_rate_foot_along_y * t184 - pose[0] * t177;
-        let t190 = pose[0] * (minus_rate_foot_along_y * t172);
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t182
-            - (gdrive_vx_along_y * t187 + t190 - 0.31 * t9 * t177 + t190);
-        let t197 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t61;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t134;
-        let t201 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t165
-            + minus_gfoot_vy_along_z * t134;
-        let t206 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t208 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t210 = t201 * t201 + t206 + t208 * t208;
-        let t213 = pose[1] * (minus_rate_foot_along_z * t201);
-        let t215 = pose[0] * t210 + t213 + t213;
-        let t217 = pose[1] * minus_rate_foot_along_z;
-        let t220 = minus_rate_foot_along_z * t217 - pose[1] * t210;
-        let t224 = pose[1] * (minus_rate_foot_along_z * t208);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t215 - gdrive_vy_along_z * t220
-            - (t224 - 0.31 * t31 * t210 + t224);
-        let t230 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t236 = t159 + gdrive_vx_along_y * t197 + gdrive_vx_along_z * t230;
-        let t238 = gdrive_vy_along_x * t159 + t197 + gdrive_vy_along_z * t230
-            - t73 * t236;
-        let t248 = t106
-            * (gdrive_vz_along_x * t159 + gdrive_vz_along_y * t197 + t230 - t95 * t236
-                - t103 * t238);
-        let t250 = t76 * t238 - t103 * t248;
-        let t253 = t248 - t156;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * (t250 + t144)
-            + minus_gfoot_vz_along_x * t253;
-        let t259 = c_foot_along_x * actuator_accelerations[0];
-        let t263 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t270 = c_foot_along_x
-            * (parameters[7] * minus_rate_dot_foot_along_x - t138 * parameters[6]
-                + parameters[8] * t259)
+                - t89 * t70 - t78 * t97);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t100;
+        let t102 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t105 = t58 * t97 - t78 * t100;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t42 * t73);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t105
+            + minus_gfoot_vz_along_x * t100;
+        let t111 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t112 = t102 + t111;
+        let t115 = pose[2] * t102;
+        let rate_dot_drive_along_x = t48 * (0.31 * t44 * t112)
+            + gdrive_vz_along_x * t115;
+        let t118 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t7 * t67);
+        let t126 = t89 * t33 - t55 * t105 - t70 * t100;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t126
+            + minus_gfoot_vz_along_y * t100;
+        let t130 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t131 = t130 * t130;
+        let minus_gleft_bar_vx_along_y = c_foot_along_y * minus_gfoot_vz_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t126;
+        let t134 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t135 = t131 + t134;
+        let t136 = 0.31 * t135;
+        let rate_dot_drive_along_y = t136 / t9;
+        let t138 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t26 * t53);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t126
+            + minus_gfoot_vy_along_z * t105;
+        let t145 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t146 = t145 * t145;
+        let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t105;
+        let t149 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t150 = t146 + t149;
+        let t151 = 0.31 * t150;
+        let rate_dot_drive_along_z = t151 / t28;
+        let t153 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t159 = t118 + gdrive_vx_along_y * t138 + gdrive_vx_along_z * t153;
+        let t161 = gdrive_vy_along_x * t118 + t138 + gdrive_vy_along_z * t153
+            - t55 * t159;
+        let t171 = t81
+            * (gdrive_vz_along_x * t118 + gdrive_vz_along_y * t138 + t153 - t70 * t159
+                - t78 * t161);
+        let t173 = t58 * t161 - t78 * t171;
+        let t176 = pose[2] * minus_rate_foot_along_x;
+        let t177 = c_foot_along_x * minus_rate_left_bar_along_x * t176;
+        let t182 = t171 + t115;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t173 + pose[1] * t112 + t177 + t177) + minus_gfoot_vz_along_x * t182;
+        let t188 = c_foot_along_x * actuator_accelerations[0];
+        let t192 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t199 = c_foot_along_x
+            * (parameters[7] * minus_rate_dot_foot_along_x - t111 * parameters[6]
+                + parameters[8] * t188)
             + minus_s_foot_along_x
-                * (parameters[8] * t263
+                * (parameters[8] * t192
                     - (parameters[6] * minus_rate_dot_foot_along_x
-                        + t138 * parameters[7]));
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t253;
-        let t273 = 3.225806451612903 * t153;
-        let t274 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t275 = t273 * t274;
-        let t276 = minus_rate_dot_left_bar_along_x - t275;
-        let t279 = c_left_bar_along_x * (c_foot_along_x * rate_dot_drive_along_x);
-        let t280 = 3.225806451612903 * t279;
-        let t283 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t288 = c_left_bar_along_x * t259 + 31.64516129032258 * pose[2];
-        let t294 = minus_s_left_bar_along_x * t259 - 9.81 * c_left_bar_along_x;
-        let t296 = t275 + minus_rate_dot_left_bar_along_x;
-        let t299 = 10.40582726326743 * (t153 * t153);
-        let t300 = t299 + t131;
-        let t303 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t308 = t54
-            * (parameters[16] * t276 - t280 * parameters[15] - parameters[17] * t283
-                + parameters[18] * t288)
-            + t84
-                * (parameters[18] * t294
-                    - (parameters[15] * t296 + t300 * parameters[16]
-                        + parameters[17] * t303));
-        let t309 = minus_rate_left_bar_along_x * t274;
-        let t310 = t303 + t309;
-        let t311 = t309 + t310;
-        let t313 = minus_rate_left_bar_along_x * t273;
-        let t314 = t313 - t283;
-        let t315 = t313 + t314;
-        let t324 = actuator_accelerations[0] * parameters[0]
+                        + t111 * parameters[7]));
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t182;
+        let t202 = 3.225806451612903 * t176;
+        let t203 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t204 = t202 * t203;
+        let t205 = minus_rate_dot_left_bar_along_x - t204;
+        let t207 = t44 * rate_dot_drive_along_x;
+        let t208 = 3.225806451612903 * t207;
+        let t211 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t216 = c_left_bar_along_x * t188 + 31.64516129032258 * pose[2];
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t221 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t224 = minus_s_left_bar_along_x * t188 - 9.81 * c_left_bar_along_x;
+        let t226 = t204 + minus_rate_dot_left_bar_along_x;
+        let t228 = t14 * t111;
+        let t229 = t228 + t102;
+        let t232 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t237 = t44
+            * (parameters[16] * t205 - t208 * parameters[15] - parameters[17] * t211
+                + parameters[18] * t216)
+            + t221
+                * (parameters[18] * t224
+                    - (parameters[15] * t226 + t229 * parameters[16]
+                        + parameters[17] * t232));
+        let t238 = minus_rate_left_bar_along_x * t203;
+        let t239 = t232 + t238;
+        let t240 = t238 + t239;
+        let t242 = minus_rate_left_bar_along_x * t202;
+        let t243 = t242 - t211;
+        let t244 = t242 + t243;
+        let t253 = actuator_accelerations[0] * parameters[0]
             + actuator_accelerations[0] * parameters[1]
             + actuator_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], actuator_velocities[0])
-            + parameters[4] + t270 + t308
+            + parameters[4] + t199 + t237
             - minus_s_foot_along_x
-                * (parameters[16] * t311 - parameters[15] * t315 - t138 * parameters[17]
-                    - parameters[18] * t263);
-        let t341 = t54
-            * (parameters[26] * t276 - t280 * parameters[25] - parameters[27] * t283
-                + parameters[28] * t288)
-            + t84
-                * (parameters[28] * t294
-                    - (parameters[25] * t296 + t300 * parameters[26]
-                        + parameters[27] * t303));
-        let t351 = t324 + t341
+                * (parameters[16] * t240 - parameters[15] * t244 - t111 * parameters[17]
+                    - parameters[18] * t192);
+        let t270 = t44
+            * (parameters[26] * t205 - t208 * parameters[25] - parameters[27] * t211
+                + parameters[28] * t216)
+            + t221
+                * (parameters[28] * t224
+                    - (parameters[25] * t226 + t229 * parameters[26]
+                        + parameters[27] * t232));
+        let t280 = t253 + t270
             - minus_s_foot_along_x
-                * (parameters[26] * t311 - parameters[25] * t315 - t138 * parameters[27]
-                    - parameters[28] * t263);
-        let t352 = t288 - t279;
-        let t355 = t294 - 0.31 * t296;
-        let t357 = c_left_bar_along_x * t352 + minus_s_left_bar_along_x * t355;
-        let t362 = parameters[32] * t357
-            - (t138 * parameters[30] + parameters[31] * minus_rate_dot_foot_along_x);
-        let t368 = t263 + 0.31 * t315;
-        let t370 = parameters[30] * minus_rate_dot_foot_along_x - t138 * parameters[31]
-            - parameters[32] * t368;
-        let t373 = t351 + c_foot_along_x * t362 - minus_s_foot_along_x * t370;
-        let t386 = t36 * t236 - t73 * t250 - t95 * t248;
-        let t387 = t386 - t187;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t387
-            + minus_gfoot_vz_along_y * (t248 + t182);
-        let t397 = 9.81 * minus_s_foot_along_y
+                * (parameters[26] * t240 - parameters[25] * t244 - t111 * parameters[27]
+                    - parameters[28] * t192);
+        let t286 = c_left_bar_along_x * (t216 - t207)
+            + minus_s_left_bar_along_x * (t224 - 0.31 * t226);
+        let t291 = parameters[32] * t286
+            - (t111 * parameters[30] + parameters[31] * minus_rate_dot_foot_along_x);
+        let t297 = t192 + 0.31 * t244;
+        let t299 = parameters[30] * minus_rate_dot_foot_along_x - t111 * parameters[31]
+            - parameters[32] * t297;
+        let t302 = t280 + c_foot_along_x * t291 - minus_s_foot_along_x * t299;
+        let t315 = t33 * t159 - t55 * t173 - t70 * t171;
+        let t317 = t315 + pose[0] * t134;
+        let t319 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t323 = pose[0] * minus_rate_foot_along_y;
+        let t324 = c_foot_along_y * minus_rate_left_bar_along_y * t323;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t317
+            + minus_gfoot_vz_along_y * (t171 + pose[2] * (t319 + t134) + t324 + t324);
+        let t335 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t403 = minus_s_foot_along_y * actuator_accelerations[1]
+        let t341 = minus_s_foot_along_y * actuator_accelerations[1]
             - 9.81 * c_foot_along_y;
-        let t410 = c_foot_along_y
-            * (parameters[40] * minus_rate_dot_foot_along_y - t169 * parameters[39]
-                + parameters[41] * t397)
+        let t348 = c_foot_along_y
+            * (parameters[40] * minus_rate_dot_foot_along_y - t319 * parameters[39]
+                + parameters[41] * t335)
             + minus_s_foot_along_y
-                * (parameters[41] * t403
+                * (parameters[41] * t341
                     - (parameters[39] * minus_rate_dot_foot_along_y
-                        + t169 * parameters[40]));
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t387;
-        let t413 = 3.225806451612903 * t184;
-        let t414 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t415 = t413 * t414;
-        let t416 = minus_rate_dot_left_bar_along_y - t415;
-        let t418 = t414 * t414;
-        let t419 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t420 = t418 + t419;
-        let t423 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t426 = c_left_bar_along_y * t397;
-        let t430 = minus_s_left_bar_along_y * t397;
-        let t432 = t415 + minus_rate_dot_left_bar_along_y;
-        let t435 = 10.40582726326743 * (t184 * t184);
-        let t436 = t435 + t419;
-        let t439 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t444 = t9
-            * (parameters[49] * t416 - t420 * parameters[48] - parameters[50] * t423
-                + parameters[51] * t426)
-            + t17
-                * (parameters[51] * t430
-                    - (parameters[48] * t432 + t436 * parameters[49]
-                        + parameters[50] * t439));
-        let t445 = minus_rate_left_bar_along_y * t414;
-        let t446 = t439 + t445;
-        let t447 = t445 + t446;
-        let t449 = minus_rate_left_bar_along_y * t413;
-        let t450 = t449 - t423;
-        let t451 = t449 + t450;
-        let t460 = actuator_accelerations[1] * parameters[33]
+                        + t319 * parameters[40]));
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t317;
+        let t351 = 3.225806451612903 * t323;
+        let t352 = t351 * t130;
+        let t353 = minus_rate_dot_left_bar_along_y - t352;
+        let t357 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t360 = c_left_bar_along_y * t335;
+        let t364 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t365 = minus_s_left_bar_along_y * t335;
+        let t367 = t352 + minus_rate_dot_left_bar_along_y;
+        let t369 = t1 * t319;
+        let t370 = t369 + t134;
+        let t373 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t378 = t9
+            * (parameters[49] * t353 - t135 * parameters[48] - parameters[50] * t357
+                + parameters[51] * t360)
+            + t364
+                * (parameters[51] * t365
+                    - (parameters[48] * t367 + t370 * parameters[49]
+                        + parameters[50] * t373));
+        let t379 = minus_rate_left_bar_along_y * t130;
+        let t380 = t373 + t379;
+        let t381 = t379 + t380;
+        let t383 = minus_rate_left_bar_along_y * t351;
+        let t384 = t383 - t357;
+        let t385 = t383 + t384;
+        let t394 = actuator_accelerations[1] * parameters[33]
             + actuator_accelerations[1] * parameters[34]
             + actuator_velocities[1] * parameters[35]
             + ::overact::math::signed(parameters[36], actuator_velocities[1])
-            + parameters[37] + t410 + t444
+            + parameters[37] + t348 + t378
             - minus_s_foot_along_y
-                * (parameters[49] * t447 - parameters[48] * t451 - t169 * parameters[50]
-                    - parameters[51] * t403);
-        let t477 = t9
-            * (parameters[59] * t416 - t420 * parameters[58] - parameters[60] * t423
-                + parameters[61] * t426)
-            + t17
-                * (parameters[61] * t430
-                    - (parameters[58] * t432 + t436 * parameters[59]
-                        + parameters[60] * t439));
-        let t487 = t460 + t477
+                * (parameters[49] * t381 - parameters[48] * t385 - t319 * parameters[50]
+                    - parameters[51] * t341);
+        let t411 = t9
+            * (parameters[59] * t353 - t135 * parameters[58] - parameters[60] * t357
+                + parameters[61] * t360)
+            + t364
+                * (parameters[61] * t365
+                    - (parameters[58] * t367 + t370 * parameters[59]
+                        + parameters[60] * t373));
+        let t421 = t394 + t411
             - minus_s_foot_along_y
-                * (parameters[59] * t447 - parameters[58] * t451 - t169 * parameters[60]
-                    - parameters[61] * t403);
-        let t494 = c_left_bar_along_y * (t426 - 0.31 * t420)
-            + minus_s_left_bar_along_y * (t430 - 0.31 * t432);
-        let t499 = parameters[65] * t494
-            - (t169 * parameters[63] + parameters[64] * minus_rate_dot_foot_along_y);
-        let t505 = t403 + 0.31 * t451;
-        let t507 = parameters[63] * minus_rate_dot_foot_along_y - t169 * parameters[64]
-            - parameters[65] * t505;
-        let t510 = t487 + c_foot_along_y * t499 - minus_s_foot_along_y * t507;
-        let t520 = t419 - t435;
-        let t528 = parameters[43] * t447 - t449 * parameters[42] + parameters[44] * t520
-            + parameters[45] * t450 - parameters[46] * t416 + t449 * parameters[47];
-        let t541 = t418 - t419;
-        let t545 = parameters[42] * t446 + parameters[43] * t451 - parameters[44] * t432
-            - t445 * parameters[45] + parameters[46] * t541 + t445 * parameters[47];
-        let t551 = c_left_bar_along_y
-            * (t528 + parameters[48] * t403 + parameters[50] * t426)
+                * (parameters[59] * t381 - parameters[58] * t385 - t319 * parameters[60]
+                    - parameters[61] * t341);
+        let t427 = c_left_bar_along_y * (t360 - t136)
+            + minus_s_left_bar_along_y * (t365 - 0.31 * t367);
+        let t432 = parameters[65] * t427
+            - (t319 * parameters[63] + parameters[64] * minus_rate_dot_foot_along_y);
+        let t438 = t341 + 0.31 * t385;
+        let t440 = parameters[63] * minus_rate_dot_foot_along_y - t319 * parameters[64]
+            - parameters[65] * t438;
+        let t443 = t421 + c_foot_along_y * t432 - minus_s_foot_along_y * t440;
+        let t453 = t134 - t369;
+        let t461 = parameters[43] * t381 - t383 * parameters[42] + parameters[44] * t453
+            + parameters[45] * t384 - parameters[46] * t353 + t383 * parameters[47];
+        let t474 = t131 - t134;
+        let t478 = parameters[42] * t380 + parameters[43] * t385 - parameters[44] * t367
+            - t379 * parameters[45] + parameters[46] * t474 + t379 * parameters[47];
+        let t484 = c_left_bar_along_y
+            * (t461 + parameters[48] * t341 + parameters[50] * t360)
             - minus_s_left_bar_along_y
-                * (t545 - parameters[49] * t403 - parameters[50] * t430);
-        let t563 = parameters[53] * t447 - t449 * parameters[52] + parameters[54] * t520
-            + parameters[55] * t450 - parameters[56] * t416 + t449 * parameters[57];
-        let t579 = parameters[52] * t446 + parameters[53] * t451 - parameters[54] * t432
-            - t445 * parameters[55] + parameters[56] * t541 + t445 * parameters[57];
-        let t585 = c_left_bar_along_y
-            * (t563 + parameters[58] * t403 + parameters[60] * t426)
+                * (t478 - parameters[49] * t341 - parameters[50] * t365);
+        let t496 = parameters[53] * t381 - t383 * parameters[52] + parameters[54] * t453
+            + parameters[55] * t384 - parameters[56] * t353 + t383 * parameters[57];
+        let t512 = parameters[52] * t380 + parameters[53] * t385 - parameters[54] * t367
+            - t379 * parameters[55] + parameters[56] * t474 + t379 * parameters[57];
+        let t518 = c_left_bar_along_y
+            * (t496 + parameters[58] * t341 + parameters[60] * t360)
             - minus_s_left_bar_along_y
-                * (t579 - parameters[59] * t403 - parameters[60] * t430);
-        let t594 = parameters[39] * t403 - parameters[38] * minus_rate_dot_foot_along_y
-            - parameters[40] * t397 + t551 + t585 + parameters[63] * t505
-            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t494
-            - t4 * t507;
-        let t598 = t435 - t418;
-        let t608 = t415 * parameters[42] + parameters[43] * t598 + parameters[44] * t439
-            - t415 * parameters[45] - parameters[46] * t423
+                * (t512 - parameters[59] * t341 - parameters[60] * t365);
+        let t527 = parameters[39] * t341 - parameters[38] * minus_rate_dot_foot_along_y
+            - parameters[40] * t335 + t484 + t518 + parameters[63] * t438
+            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t427
+            - t4 * t440;
+        let t531 = t369 - t131;
+        let t541 = t352 * parameters[42] + parameters[43] * t531 + parameters[44] * t373
+            - t352 * parameters[45] - parameters[46] * t357
             - parameters[47] * minus_rate_dot_left_bar_along_y;
-        let t623 = t415 * parameters[52] + parameters[53] * t598 + parameters[54] * t439
-            - t415 * parameters[55] - parameters[56] * t423
+        let t556 = t352 * parameters[52] + parameters[53] * t531 + parameters[54] * t373
+            - t352 * parameters[55] - parameters[56] * t357
             - parameters[57] * minus_rate_dot_left_bar_along_y;
-        let t633 = t608 + parameters[48] * t430 - parameters[49] * t426 + t623
-            + parameters[58] * t430 - parameters[59] * t426 + pose[0] * t499
-            - t4 * (t386 * parameters[65]);
-        let t637 = 9.81 + actuator_accelerations[2];
-        let t648 = t250 - t220;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t386 + t215)
-            + minus_gfoot_vy_along_z * t648;
-        let t654 = c_foot_along_z * t637;
-        let t658 = minus_s_foot_along_z * t637;
-        let t665 = c_foot_along_z
-            * (parameters[73] * minus_rate_dot_foot_along_z - t206 * parameters[72]
-                + parameters[74] * t654)
+        let t566 = t541 + parameters[48] * t365 - parameters[49] * t360 + t556
+            + parameters[58] * t365 - parameters[59] * t360 + pose[0] * t432
+            - t4 * (t315 * parameters[65]);
+        let t570 = 9.81 + actuator_accelerations[2];
+        let t579 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t583 = pose[1] * minus_rate_foot_along_z;
+        let t584 = c_foot_along_z * minus_rate_left_bar_along_z * t583;
+        let t590 = t173 + pose[1] * t149;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
+            * (t315 + pose[0] * (t579 + t149) + t584 + t584)
+            + minus_gfoot_vy_along_z * t590;
+        let t596 = c_foot_along_z * t570;
+        let t600 = minus_s_foot_along_z * t570;
+        let t607 = c_foot_along_z
+            * (parameters[73] * minus_rate_dot_foot_along_z - t579 * parameters[72]
+                + parameters[74] * t596)
             + minus_s_foot_along_z
-                * (parameters[74] * t658
+                * (parameters[74] * t600
                     - (parameters[72] * minus_rate_dot_foot_along_z
-                        + t206 * parameters[73]));
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t648;
-        let t668 = 3.225806451612903 * t217;
-        let t669 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t670 = t668 * t669;
-        let t671 = minus_rate_dot_left_bar_along_z - t670;
-        let t673 = t669 * t669;
-        let t674 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t675 = t673 + t674;
-        let t678 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t681 = c_left_bar_along_z * t654;
-        let t685 = minus_s_left_bar_along_z * t654;
-        let t687 = t670 + minus_rate_dot_left_bar_along_z;
-        let t690 = 10.40582726326743 * (t217 * t217);
-        let t691 = t690 + t674;
-        let t694 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t699 = t31
-            * (parameters[82] * t671 - t675 * parameters[81] - parameters[83] * t678
-                + parameters[84] * t681)
-            + t65
-                * (parameters[84] * t685
-                    - (parameters[81] * t687 + t691 * parameters[82]
-                        + parameters[83] * t694));
-        let t700 = minus_rate_left_bar_along_z * t669;
-        let t701 = t694 + t700;
-        let t702 = t700 + t701;
-        let t704 = minus_rate_left_bar_along_z * t668;
-        let t705 = t704 - t678;
-        let t706 = t704 + t705;
-        let t715 = parameters[66] * t637 + actuator_accelerations[2] * parameters[67]
+                        + t579 * parameters[73]));
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t590;
+        let t610 = 3.225806451612903 * t583;
+        let t611 = t610 * t145;
+        let t612 = minus_rate_dot_left_bar_along_z - t611;
+        let t616 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t619 = c_left_bar_along_z * t596;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t624 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t625 = minus_s_left_bar_along_z * t596;
+        let t627 = t611 + minus_rate_dot_left_bar_along_z;
+        let t629 = t20 * t579;
+        let t630 = t629 + t149;
+        let t633 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t638 = t28
+            * (parameters[82] * t612 - t150 * parameters[81] - parameters[83] * t616
+                + parameters[84] * t619)
+            + t624
+                * (parameters[84] * t625
+                    - (parameters[81] * t627 + t630 * parameters[82]
+                        + parameters[83] * t633));
+        let t639 = minus_rate_left_bar_along_z * t145;
+        let t640 = t633 + t639;
+        let t641 = t639 + t640;
+        let t643 = minus_rate_left_bar_along_z * t610;
+        let t644 = t643 - t616;
+        let t645 = t643 + t644;
+        let t654 = parameters[66] * t570 + actuator_accelerations[2] * parameters[67]
             + actuator_velocities[2] * parameters[68]
             + ::overact::math::signed(parameters[69], actuator_velocities[2])
-            + parameters[70] + t665 + t699
+            + parameters[70] + t607 + t638
             - minus_s_foot_along_z
-                * (parameters[82] * t702 - parameters[81] * t706 - t206 * parameters[83]
-                    - parameters[84] * t658);
-        let t732 = t31
-            * (parameters[92] * t671 - t675 * parameters[91] - parameters[93] * t678
-                + parameters[94] * t681)
-            + t65
-                * (parameters[94] * t685
-                    - (parameters[91] * t687 + t691 * parameters[92]
-                        + parameters[93] * t694));
-        let t742 = t715 + t732
+                * (parameters[82] * t641 - parameters[81] * t645 - t579 * parameters[83]
+                    - parameters[84] * t600);
+        let t671 = t28
+            * (parameters[92] * t612 - t150 * parameters[91] - parameters[93] * t616
+                + parameters[94] * t619)
+            + t624
+                * (parameters[94] * t625
+                    - (parameters[91] * t627 + t630 * parameters[92]
+                        + parameters[93] * t633));
+        let t681 = t654 + t671
             - minus_s_foot_along_z
-                * (parameters[92] * t702 - parameters[91] * t706 - t206 * parameters[93]
-                    - parameters[94] * t658);
-        let t749 = c_left_bar_along_z * (t681 - 0.31 * t675)
-            + minus_s_left_bar_along_z * (t685 - 0.31 * t687);
-        let t754 = parameters[98] * t749
-            - (t206 * parameters[96] + parameters[97] * minus_rate_dot_foot_along_z);
-        let t760 = t658 + 0.31 * t706;
-        let t762 = parameters[96] * minus_rate_dot_foot_along_z - t206 * parameters[97]
-            - parameters[98] * t760;
-        let t765 = t742 + c_foot_along_z * t754 - minus_s_foot_along_z * t762;
-        let t775 = t674 - t690;
-        let t783 = parameters[76] * t702 - t704 * parameters[75] + parameters[77] * t775
-            + parameters[78] * t705 - parameters[79] * t671 + t704 * parameters[80];
-        let t796 = t673 - t674;
-        let t800 = parameters[75] * t701 + parameters[76] * t706 - parameters[77] * t687
-            - t700 * parameters[78] + parameters[79] * t796 + t700 * parameters[80];
-        let t806 = c_left_bar_along_z
-            * (t783 + parameters[81] * t658 + parameters[83] * t681)
+                * (parameters[92] * t641 - parameters[91] * t645 - t579 * parameters[93]
+                    - parameters[94] * t600);
+        let t687 = c_left_bar_along_z * (t619 - t151)
+            + minus_s_left_bar_along_z * (t625 - 0.31 * t627);
+        let t692 = parameters[98] * t687
+            - (t579 * parameters[96] + parameters[97] * minus_rate_dot_foot_along_z);
+        let t698 = t600 + 0.31 * t645;
+        let t700 = parameters[96] * minus_rate_dot_foot_along_z - t579 * parameters[97]
+            - parameters[98] * t698;
+        let t703 = t681 + c_foot_along_z * t692 - minus_s_foot_along_z * t700;
+        let t713 = t149 - t629;
+        let t721 = parameters[76] * t641 - t643 * parameters[75] + parameters[77] * t713
+            + parameters[78] * t644 - parameters[79] * t612 + t643 * parameters[80];
+        let t734 = t146 - t149;
+        let t738 = parameters[75] * t640 + parameters[76] * t645 - parameters[77] * t627
+            - t639 * parameters[78] + parameters[79] * t734 + t639 * parameters[80];
+        let t744 = c_left_bar_along_z
+            * (t721 + parameters[81] * t600 + parameters[83] * t619)
             - minus_s_left_bar_along_z
-                * (t800 - parameters[82] * t658 - parameters[83] * t685);
-        let t818 = parameters[86] * t702 - t704 * parameters[85] + parameters[87] * t775
-            + parameters[88] * t705 - parameters[89] * t671 + t704 * parameters[90];
-        let t834 = parameters[85] * t701 + parameters[86] * t706 - parameters[87] * t687
-            - t700 * parameters[88] + parameters[89] * t796 + t700 * parameters[90];
-        let t840 = c_left_bar_along_z
-            * (t818 + parameters[91] * t658 + parameters[93] * t681)
+                * (t738 - parameters[82] * t600 - parameters[83] * t625);
+        let t756 = parameters[86] * t641 - t643 * parameters[85] + parameters[87] * t713
+            + parameters[88] * t644 - parameters[89] * t612 + t643 * parameters[90];
+        let t772 = parameters[85] * t640 + parameters[86] * t645 - parameters[87] * t627
+            - t639 * parameters[88] + parameters[89] * t734 + t639 * parameters[90];
+        let t778 = c_left_bar_along_z
+            * (t756 + parameters[91] * t600 + parameters[93] * t619)
             - minus_s_left_bar_along_z
-                * (t834 - parameters[92] * t658 - parameters[93] * t685);
-        let t849 = parameters[72] * t658 - parameters[71] * minus_rate_dot_foot_along_z
-            - parameters[73] * t654 + t806 + t840 + parameters[96] * t760
-            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t749
-            - t26 * t762;
-        let t852 = t373 + gdrive_vx_along_y * t510 - minus_gfoot_vx_along_y * t594
-            - minus_gleft_bar_vx_along_y * t633 + gdrive_vx_along_z * t765
-            - minus_gfoot_vx_along_z * t849;
-        let t856 = t852 + t386 * parameters[99] + t386 * parameters[100];
-        let t867 = t131 - t299;
-        let t875 = parameters[10] * t311 - t313 * parameters[9] + parameters[11] * t867
-            + parameters[12] * t314 - parameters[13] * t276 + t313 * parameters[14];
-        let t888 = t274 * t274;
-        let t889 = t888 - t131;
-        let t893 = parameters[9] * t310 + parameters[10] * t315 - parameters[11] * t296
-            - t309 * parameters[12] + parameters[13] * t889 + t309 * parameters[14];
-        let t899 = c_left_bar_along_x
-            * (t875 + parameters[15] * t263 + parameters[17] * t288)
+                * (t772 - parameters[92] * t600 - parameters[93] * t625);
+        let t787 = parameters[72] * t600 - parameters[71] * minus_rate_dot_foot_along_z
+            - parameters[73] * t596 + t744 + t778 + parameters[96] * t698
+            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t687
+            - t23 * t700;
+        let t790 = t302 + gdrive_vx_along_y * t443 - minus_gfoot_vx_along_y * t527
+            - minus_gleft_bar_vx_along_y * t566 + gdrive_vx_along_z * t703
+            - minus_gfoot_vx_along_z * t787;
+        let t794 = t790 + t315 * parameters[99] + t315 * parameters[100];
+        let t805 = t102 - t228;
+        let t813 = parameters[10] * t240 - t242 * parameters[9] + parameters[11] * t805
+            + parameters[12] * t243 - parameters[13] * t205 + t242 * parameters[14];
+        let t826 = t203 * t203;
+        let t827 = t826 - t102;
+        let t831 = parameters[9] * t239 + parameters[10] * t244 - parameters[11] * t226
+            - t238 * parameters[12] + parameters[13] * t827 + t238 * parameters[14];
+        let t837 = c_left_bar_along_x
+            * (t813 + parameters[15] * t192 + parameters[17] * t216)
             - minus_s_left_bar_along_x
-                * (t893 - parameters[16] * t263 - parameters[17] * t294);
-        let t911 = parameters[20] * t311 - t313 * parameters[19] + parameters[21] * t867
-            + parameters[22] * t314 - parameters[23] * t276 + t313 * parameters[24];
-        let t927 = parameters[19] * t310 + parameters[20] * t315 - parameters[21] * t296
-            - t309 * parameters[22] + parameters[23] * t889 + t309 * parameters[24];
-        let t933 = c_left_bar_along_x
-            * (t911 + parameters[25] * t263 + parameters[27] * t288)
+                * (t831 - parameters[16] * t192 - parameters[17] * t224);
+        let t849 = parameters[20] * t240 - t242 * parameters[19] + parameters[21] * t805
+            + parameters[22] * t243 - parameters[23] * t205 + t242 * parameters[24];
+        let t865 = parameters[19] * t239 + parameters[20] * t244 - parameters[21] * t226
+            - t238 * parameters[22] + parameters[23] * t827 + t238 * parameters[24];
+        let t871 = c_left_bar_along_x
+            * (t849 + parameters[25] * t192 + parameters[27] * t216)
             - minus_s_left_bar_along_x
-                * (t927 - parameters[26] * t263 - parameters[27] * t294);
-        let t942 = parameters[6] * t263 - parameters[5] * minus_rate_dot_foot_along_x
-            - parameters[7] * t259 + t899 + t933 + parameters[30] * t368
-            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t357
-            - t49 * t370;
-        let t950 = t690 - t673;
-        let t960 = t670 * parameters[75] + parameters[76] * t950 + parameters[77] * t694
-            - t670 * parameters[78] - parameters[79] * t678
+                * (t865 - parameters[26] * t192 - parameters[27] * t224);
+        let t880 = parameters[6] * t192 - parameters[5] * minus_rate_dot_foot_along_x
+            - parameters[7] * t188 + t837 + t871 + parameters[30] * t297
+            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t286
+            - t17 * t299;
+        let t888 = t629 - t146;
+        let t898 = t611 * parameters[75] + parameters[76] * t888 + parameters[77] * t633
+            - t611 * parameters[78] - parameters[79] * t616
             - parameters[80] * minus_rate_dot_left_bar_along_z;
-        let t975 = t670 * parameters[85] + parameters[86] * t950 + parameters[87] * t694
-            - t670 * parameters[88] - parameters[89] * t678
+        let t913 = t611 * parameters[85] + parameters[86] * t888 + parameters[87] * t633
+            - t611 * parameters[88] - parameters[89] * t616
             - parameters[90] * minus_rate_dot_left_bar_along_z;
-        let t985 = t960 + parameters[81] * t685 - parameters[82] * t681 + t975
-            + parameters[91] * t685 - parameters[92] * t681 + pose[1] * t754
-            - t26 * (t250 * parameters[98]);
-        let t988 = gdrive_vy_along_x * t373 - minus_gfoot_vy_along_x * t942 + t510
-            + gdrive_vy_along_z * t765 - minus_gfoot_vy_along_z * t849
-            - minus_gleft_bar_vy_along_z * t985;
-        let t994 = t988 + t250 * parameters[99] + t250 * parameters[100] - t73 * t856;
-        let t1000 = t299 - t888;
-        let t1010 = t275 * parameters[9] + parameters[10] * t1000 + parameters[11] * t303
-            - t275 * parameters[12] - parameters[13] * t283
+        let t923 = t898 + parameters[81] * t625 - parameters[82] * t619 + t913
+            + parameters[91] * t625 - parameters[92] * t619 + pose[1] * t692
+            - t23 * (t173 * parameters[98]);
+        let t926 = gdrive_vy_along_x * t302 - minus_gfoot_vy_along_x * t880 + t443
+            + gdrive_vy_along_z * t703 - minus_gfoot_vy_along_z * t787
+            - minus_gleft_bar_vy_along_z * t923;
+        let t932 = t926 + t173 * parameters[99] + t173 * parameters[100] - t55 * t794;
+        let t938 = t228 - t826;
+        let t948 = t204 * parameters[9] + parameters[10] * t938 + parameters[11] * t232
+            - t204 * parameters[12] - parameters[13] * t211
             - parameters[14] * minus_rate_dot_left_bar_along_x;
-        let t1025 = t275 * parameters[19] + parameters[20] * t1000
-            + parameters[21] * t303 - t275 * parameters[22] - parameters[23] * t283
+        let t963 = t204 * parameters[19] + parameters[20] * t938 + parameters[21] * t232
+            - t204 * parameters[22] - parameters[23] * t211
             - parameters[24] * minus_rate_dot_left_bar_along_x;
-        let t1034 = c_left_bar_along_x * t355 - minus_s_left_bar_along_x * t352;
-        let t1038 = t1010 + parameters[15] * t294 - parameters[16] * t288 + t1025
-            + parameters[25] * t294 - parameters[26] * t288 + pose[2] * t362
-            + t49 * (parameters[32] * t1034);
-        let t1045 = gdrive_vz_along_x * t373 - minus_gfoot_vz_along_x * t942
-            - minus_gleft_bar_vz_along_x * t1038 + gdrive_vz_along_y * t510
-            - minus_gfoot_vz_along_y * t594 + t765;
-        let t1054 = t106
-            * (t1045 - (parameters[99] * t1034 + parameters[100] * t1034) - t95 * t856
-                - t103 * t994);
-        let t1056 = t76 * t994 - t103 * t1054;
-        let t1060 = t36 * t856 - t73 * t1056 - t95 * t1054;
+        let t970 = -9.81 - t171;
+        let t974 = t948 + parameters[15] * t224 - parameters[16] * t216 + t963
+            + parameters[25] * t224 - parameters[26] * t216 + pose[2] * t291
+            + t17 * (parameters[32] * t970);
+        let t981 = gdrive_vz_along_x * t302 - minus_gfoot_vz_along_x * t880
+            - minus_gleft_bar_vz_along_x * t974 + gdrive_vz_along_y * t443
+            - minus_gfoot_vz_along_y * t527 + t703;
+        let t990 = t81
+            * (t981 - (parameters[99] * t970 + parameters[100] * t970) - t70 * t794
+                - t78 * t932);
+        let t992 = t58 * t932 - t78 * t990;
+        let t996 = t33 * t794 - t55 * t992 - t70 * t990;
         Ok([
-            t1060 + gdrive_vy_along_x * t1056 + gdrive_vz_along_x * t1054,
-            gdrive_vx_along_y * t1060 + t1056 + gdrive_vz_along_y * t1054,
-            gdrive_vx_along_z * t1060 + gdrive_vy_along_z * t1056 + t1054,
+            t996 + gdrive_vy_along_x * t992 + gdrive_vz_along_x * t990,
+            gdrive_vx_along_y * t996 + t992 + gdrive_vz_along_y * t990,
+            gdrive_vx_along_z * t996 + gdrive_vy_along_z * t992 + t990,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -8075,7 +7372,7 @@ impl Orthoglide {
     ///
     /// Output: 3 x 3.
     ///
-    /// 896 operations (376 additions, 511 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 896 intermediates.
+    /// 814 operations (338 additions, 467 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 814 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8083,412 +7380,368 @@ impl Orthoglide {
         pose: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t7 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        let t0 = parameters[0] + parameters[1];
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t7 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t7, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t7);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let t9 = 0.31 * c_left_bar_along_y;
         let minus_s_foot_along_y = pose[2] / t9;
-        let t12 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        let t11 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t12 = 1.0 - t11;
         ::overact::guard::reach(t12, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t12);
         let t14 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t14, 1.0, "along_y")?;
         let minus_gfoot_vz_along_y = 3.225806451612903 / t14;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t17 = minus_s_left_bar_along_y * minus_s_foot_along_y;
-        let t18 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t17 * t18);
-        let t22 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t22 * t18;
-        let t29 = c_foot_along_y * gdrive_vx_along_y;
-        let t33 = minus_s_foot_along_y * gdrive_vx_along_y;
-        let t39 = gdrive_vx_along_y * parameters[33] + gdrive_vx_along_y * parameters[34]
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t17 = parameters[33] + parameters[34];
+        let t19 = minus_s_left_bar_along_y * minus_s_foot_along_y;
+        let t20 = 1.0 / c_left_bar_along_y;
+        let t21 = t19 * t20;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t21;
+        let t24 = c_foot_along_y * gdrive_vx_along_y;
+        let t28 = minus_s_foot_along_y * gdrive_vx_along_y;
+        let t34 = gdrive_vx_along_y * t17
             + c_foot_along_y
-                * (minus_gfoot_vx_along_y * parameters[40] + parameters[41] * t29)
+                * (minus_gfoot_vx_along_y * parameters[40] + parameters[41] * t24)
             + minus_s_foot_along_y
-                * (parameters[41] * t33 - minus_gfoot_vx_along_y * parameters[39]);
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t18;
-        let t42 = 3.225806451612903 * t33;
-        let t48 = minus_s_left_bar_along_y * t29;
-        let t51 = minus_s_left_bar_along_y * minus_gfoot_vx_along_y;
-        let t56 = t14
-            * (minus_gleft_bar_vx_along_y * parameters[49] - parameters[50] * t42
+                * (parameters[41] * t28 - minus_gfoot_vx_along_y * parameters[39]);
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t20;
+        let t37 = 3.225806451612903 * t28;
+        let t43 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t44 = minus_s_left_bar_along_y * t24;
+        let t47 = minus_s_left_bar_along_y * minus_gfoot_vx_along_y;
+        let t52 = t14
+            * (minus_gleft_bar_vx_along_y * parameters[49] - parameters[50] * t37
                 + minus_s_left_bar_along_y * parameters[51])
-            + t22
-                * (parameters[51] * t48
+            + t43
+                * (parameters[51] * t44
                     - (minus_gleft_bar_vx_along_y * parameters[48]
-                        + parameters[50] * t51));
-        let t57 = parameters[48] * t42;
-        let t77 = t14
-            * (minus_gleft_bar_vx_along_y * parameters[59] - parameters[60] * t42
+                        + parameters[50] * t47));
+        let t53 = c_left_bar_along_y * minus_gfoot_vz_along_y;
+        let t55 = 3.225806451612903 * gdrive_vx_along_y;
+        let t57 = parameters[48] * t53 + parameters[49] * t55;
+        let t76 = t14
+            * (minus_gleft_bar_vx_along_y * parameters[59] - parameters[60] * t37
                 + minus_s_left_bar_along_y * parameters[61])
-            + t22
-                * (parameters[61] * t48
+            + t43
+                * (parameters[61] * t44
                     - (minus_gleft_bar_vx_along_y * parameters[58]
-                        + parameters[60] * t51));
-        let t78 = parameters[58] * t42;
-        let t85 = t39 + t56
-            - minus_s_foot_along_y * (t57 + parameters[49] * t51 - parameters[51] * t33)
-            + t77
-            - minus_s_foot_along_y * (t78 + parameters[59] * t51 - parameters[61] * t33);
-        let t86 = minus_gfoot_vx_along_y * parameters[64];
-        let t88 = minus_gfoot_vx_along_y * parameters[63];
-        let t91 = t85 - (c_foot_along_y * t86 + minus_s_foot_along_y * t88);
-        let t107 = c_left_bar_along_y
-            * (parameters[43] * t51 - parameters[45] * t42
-                - minus_gleft_bar_vx_along_y * parameters[46] + 0.31 * t57
-                + minus_s_left_bar_along_y * parameters[50]);
-        let t117 = minus_s_left_bar_along_y
-            * (parameters[42] * t51 - parameters[43] * t42
-                - minus_gleft_bar_vx_along_y * parameters[44] - parameters[49] * t33
-                - parameters[50] * t48);
-        let t129 = c_left_bar_along_y
-            * (parameters[53] * t51 - parameters[55] * t42
-                - minus_gleft_bar_vx_along_y * parameters[56] + 0.31 * t78
-                + minus_s_left_bar_along_y * parameters[60]);
-        let t139 = minus_s_left_bar_along_y
-            * (parameters[52] * t51 - parameters[53] * t42
-                - minus_gleft_bar_vx_along_y * parameters[54] - parameters[59] * t33
-                - parameters[60] * t48);
-        let t145 = parameters[39] * t33 - minus_gfoot_vx_along_y * parameters[38]
-            - parameters[40] * t29 + t107 - t117 + t129 - t139
-            - (minus_gfoot_vx_along_y * parameters[62] + t9 * t88);
-        let t166 = parameters[44] * t51 - parameters[46] * t42
-            - minus_gleft_bar_vx_along_y * parameters[47] + parameters[48] * t48
-            - minus_s_left_bar_along_y * parameters[49] + parameters[54] * t51
-            - parameters[56] * t42 - minus_gleft_bar_vx_along_y * parameters[57]
-            + parameters[58] * t48 - minus_s_left_bar_along_y * parameters[59];
-        let t173 = parameters[0] + parameters[1] + parameters[8] + parameters[18]
-            + parameters[28] + parameters[32] + gdrive_vx_along_y * t91
-            - minus_gfoot_vx_along_y * t145
+                        + parameters[60] * t47));
+        let t79 = parameters[58] * t53 + parameters[59] * t55;
+        let t85 = t34 + t52 - minus_s_foot_along_y * (t21 * t57 - parameters[51] * t28)
+            + t76 - minus_s_foot_along_y * (t21 * t79 - parameters[61] * t28);
+        let t88 = minus_s_foot_along_y * parameters[65]
+            - minus_gfoot_vz_along_y * parameters[64];
+        let t92 = minus_gfoot_vz_along_y * parameters[63]
+            + c_foot_along_y * parameters[65];
+        let t94 = c_foot_along_y * t88 - minus_s_foot_along_y * t92;
+        let t96 = t85 + t21 * t94;
+        let t105 = parameters[43] * t55 - parameters[45] * t53;
+        let t116 = parameters[42] * t55 - parameters[43] * t53;
+        let t125 = c_left_bar_along_y
+            * (t21 * t105 - minus_gleft_bar_vx_along_y * parameters[46]
+                + t28 * parameters[48] + minus_s_left_bar_along_y * parameters[50])
+            - minus_s_left_bar_along_y
+                * (t21 * t116 - minus_gleft_bar_vx_along_y * parameters[44]
+                    - parameters[49] * t28 - parameters[50] * t44);
+        let t129 = parameters[53] * t55 - parameters[55] * t53;
+        let t140 = parameters[52] * t55 - parameters[53] * t53;
+        let t149 = c_left_bar_along_y
+            * (t21 * t129 - minus_gleft_bar_vx_along_y * parameters[56]
+                + t28 * parameters[58] + minus_s_left_bar_along_y * parameters[60])
+            - minus_s_left_bar_along_y
+                * (t21 * t140 - minus_gleft_bar_vx_along_y * parameters[54]
+                    - parameters[59] * t28 - parameters[60] * t44);
+        let t154 = parameters[39] * t28 - minus_gfoot_vx_along_y * parameters[38]
+            - parameters[40] * t24 + t125 + t149
+            - (minus_gfoot_vx_along_y * parameters[62] + t28 * parameters[63]);
+        let t159 = parameters[44] * t55 - parameters[46] * t53;
+        let t169 = parameters[54] * t55 - parameters[56] * t53;
+        let t177 = t21 * t159 - minus_gleft_bar_vx_along_y * parameters[47]
+            + parameters[48] * t44 - minus_s_left_bar_along_y * parameters[49]
+            + t21 * t169 - minus_gleft_bar_vx_along_y * parameters[57]
+            + parameters[58] * t44 - minus_s_left_bar_along_y * parameters[59];
+        let t184 = gdrive_vx_along_y * t96 - minus_gfoot_vx_along_y * t154
             - minus_gleft_bar_vx_along_y
-                * (t166 - (pose[0] * t86 + t9 * parameters[65]));
-        let t176 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t176, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t176);
+                * (t177
+                    - (pose[0] * (minus_gfoot_vx_along_y * parameters[64])
+                        + t9 * parameters[65]));
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t188 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        ::overact::guard::reach(t188, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t188);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t178 = 0.31 * c_left_bar_along_z;
-        let minus_s_foot_along_z = pose[0] / t178;
-        let t181 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t181, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t181);
-        let t183 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t183, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t183;
+        let t190 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t190;
+        let t193 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t193, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t193);
+        let t195 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t195, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t195;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t193 = minus_s_foot_along_z * gdrive_vx_along_z;
-        let t199 = gdrive_vx_along_z * parameters[66]
-            + gdrive_vx_along_z * parameters[67]
+        let t198 = parameters[66] + parameters[67];
+        let t204 = minus_s_foot_along_z * gdrive_vx_along_z;
+        let t210 = gdrive_vx_along_z * t198
             + c_foot_along_z
                 * (minus_gfoot_vx_along_z * parameters[73]
                     + minus_s_foot_along_z * parameters[74])
             + minus_s_foot_along_z
-                * (parameters[74] * t193 - minus_gfoot_vx_along_z * parameters[72]);
-        let t201 = c_left_bar_along_z * minus_gfoot_vx_along_z;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t206 = minus_s_left_bar_along_z * c_foot_along_z;
-        let t207 = minus_s_left_bar_along_z * minus_s_foot_along_z;
-        let t209 = 1.0 / c_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t207 * t209);
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t206 * t209;
-        let t215 = 3.225806451612903 * gdrive_vy_along_z;
-        let t226 = t183
-            * (minus_s_left_bar_along_y * parameters[84] - parameters[83] * t201)
-            + t206 * (t207 * parameters[84] - parameters[83] * t215)
-            - minus_s_foot_along_z
-                * (parameters[81] * t201 + parameters[82] * t215
-                    - parameters[84] * t193);
-        let t243 = t183
-            * (minus_s_left_bar_along_y * parameters[94] - parameters[93] * t201)
-            + t206 * (t207 * parameters[94] - parameters[93] * t215)
-            - minus_s_foot_along_z
-                * (parameters[91] * t201 + parameters[92] * t215
-                    - parameters[94] * t193);
-        let t251 = minus_gfoot_vx_along_z * parameters[96]
+                * (parameters[74] * t204 - minus_gfoot_vx_along_z * parameters[72]);
+        let t212 = c_left_bar_along_z * minus_gfoot_vx_along_z;
+        let t214 = minus_s_left_bar_along_y * parameters[84] - parameters[83] * t212;
+        let t216 = minus_s_left_bar_along_z * c_foot_along_z;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t218 = c_foot_along_z * gdrive_vy_along_z;
+        let t223 = 3.225806451612903 * gdrive_vy_along_z;
+        let t225 = parameters[81] * t212 + parameters[82] * t223;
+        let t233 = minus_s_left_bar_along_y * parameters[94] - parameters[93] * t212;
+        let t240 = parameters[91] * t212 + parameters[92] * t223;
+        let t245 = t210 + t195 * t214 + t216 * (t214 * t218)
+            - minus_s_foot_along_z * (t225 - parameters[84] * t204) + t195 * t233
+            + t216 * (t233 * t218)
+            - minus_s_foot_along_z * (t240 - parameters[94] * t204);
+        let t252 = minus_gfoot_vx_along_z * parameters[96]
             + c_foot_along_z * parameters[98];
-        let t254 = t199 + t226 + t243
-            + c_foot_along_z
-                * (minus_s_foot_along_z * parameters[98]
-                    - minus_gfoot_vx_along_z * parameters[97])
-            - minus_s_foot_along_z * t251;
-        let t277 = c_left_bar_along_z
-            * (parameters[76] * t215 - parameters[78] * t201 + parameters[81] * t193
-                + minus_s_left_bar_along_y * parameters[83])
+        let t254 = c_foot_along_z
+            * (minus_s_foot_along_z * parameters[98]
+                - minus_gfoot_vx_along_z * parameters[97]) - minus_s_foot_along_z * t252;
+        let t255 = t245 + t254;
+        let t264 = parameters[76] * t223 - parameters[78] * t212;
+        let t272 = parameters[75] * t223 - parameters[76] * t212;
+        let t275 = minus_s_left_bar_along_z * minus_s_foot_along_z;
+        let t279 = c_left_bar_along_z
+            * (t264 + parameters[81] * t204 + minus_s_left_bar_along_y * parameters[83])
             - minus_s_left_bar_along_z
-                * (parameters[75] * t215 - parameters[76] * t201 - parameters[82] * t193
-                    - t207 * parameters[83]);
-        let t295 = c_left_bar_along_z
-            * (parameters[86] * t215 - parameters[88] * t201 + parameters[91] * t193
-                + minus_s_left_bar_along_y * parameters[93])
+                * (t272 - parameters[82] * t204 - t275 * parameters[83]);
+        let t283 = parameters[86] * t223 - parameters[88] * t212;
+        let t291 = parameters[85] * t223 - parameters[86] * t212;
+        let t297 = c_left_bar_along_z
+            * (t283 + parameters[91] * t204 + minus_s_left_bar_along_y * parameters[93])
             - minus_s_left_bar_along_z
-                * (parameters[85] * t215 - parameters[86] * t201 - parameters[92] * t193
-                    - t207 * parameters[93]);
-        let t304 = parameters[72] * t193 - minus_gfoot_vx_along_z * parameters[71]
-            - minus_s_foot_along_z * parameters[73] + t277 + t295
+                * (t291 - parameters[92] * t204 - t275 * parameters[93]);
+        let t306 = parameters[72] * t204 - minus_gfoot_vx_along_z * parameters[71]
+            - minus_s_foot_along_z * parameters[73] + t279 + t297
             + minus_s_foot_along_z * parameters[97]
             - (minus_gfoot_vx_along_z * parameters[95] + c_foot_along_z * parameters[96])
-            - t178 * t251;
-        let t308 = parameters[99] + parameters[100];
-        let t312 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
-        ::overact::guard::reach(t312, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t312);
+            - t190 * t252;
+        let t310 = parameters[99] + parameters[100];
+        let t311 = t0 + parameters[8] + parameters[18] + parameters[28] + parameters[32]
+            + t184 + gdrive_vx_along_z * t255 - minus_gfoot_vx_along_z * t306 + t310;
+        let t313 = 1.0 - t7 * t11;
+        ::overact::guard::reach(t313, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t313);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t314 = 0.31 * c_left_bar_along_x;
-        let minus_s_foot_along_x = pose[1] / t314;
-        let t317 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t317, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t317);
-        let t319 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t319, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t319;
+        let t315 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t315;
+        let t318 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t318, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t318);
+        let t320 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t320, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t320;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t329 = minus_s_foot_along_x * gdrive_vy_along_x;
-        let t335 = gdrive_vy_along_x * parameters[0] + gdrive_vy_along_x * parameters[1]
+        let t328 = minus_s_foot_along_x * gdrive_vy_along_x;
+        let t334 = t0 * gdrive_vy_along_x
             + c_foot_along_x
                 * (minus_gfoot_vy_along_x * parameters[7]
                     + minus_s_foot_along_x * parameters[8])
             + minus_s_foot_along_x
-                * (parameters[8] * t329 - minus_gfoot_vy_along_x * parameters[6]);
-        let t337 = c_left_bar_along_x * minus_gfoot_vy_along_x;
+                * (parameters[8] * t328 - minus_gfoot_vy_along_x * parameters[6]);
+        let t336 = c_left_bar_along_x * minus_gfoot_vy_along_x;
+        let t338 = minus_s_left_bar_along_z * parameters[18] - parameters[17] * t336;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t342 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t343 = minus_s_left_bar_along_x * minus_s_foot_along_x;
-        let t345 = 1.0 / c_left_bar_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t343 * t345);
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t342 * t345;
-        let t351 = 3.225806451612903 * gdrive_vz_along_x;
-        let t362 = t319
-            * (minus_s_left_bar_along_z * parameters[18] - parameters[17] * t337)
-            + t342 * (t343 * parameters[18] - parameters[17] * t351)
-            - minus_s_foot_along_x
-                * (parameters[15] * t337 + parameters[16] * t351
-                    - parameters[18] * t329);
-        let t379 = t319
-            * (minus_s_left_bar_along_z * parameters[28] - parameters[27] * t337)
-            + t342 * (t343 * parameters[28] - parameters[27] * t351)
-            - minus_s_foot_along_x
-                * (parameters[25] * t337 + parameters[26] * t351
-                    - parameters[28] * t329);
-        let t387 = minus_gfoot_vy_along_x * parameters[30]
+        let t341 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t343 = c_foot_along_x * gdrive_vz_along_x;
+        let t348 = 3.225806451612903 * gdrive_vz_along_x;
+        let t350 = parameters[15] * t336 + parameters[16] * t348;
+        let t358 = minus_s_left_bar_along_z * parameters[28] - parameters[27] * t336;
+        let t365 = parameters[25] * t336 + parameters[26] * t348;
+        let t370 = t334 + t320 * t338 + t341 * (t338 * t343)
+            - minus_s_foot_along_x * (t350 - parameters[18] * t328) + t320 * t358
+            + t341 * (t358 * t343)
+            - minus_s_foot_along_x * (t365 - parameters[28] * t328);
+        let t377 = minus_gfoot_vy_along_x * parameters[30]
             + c_foot_along_x * parameters[32];
-        let t390 = t335 + t362 + t379
-            + c_foot_along_x
-                * (minus_s_foot_along_x * parameters[32]
-                    - minus_gfoot_vy_along_x * parameters[31])
-            - minus_s_foot_along_x * t387;
-        let t396 = c_foot_along_z * gdrive_vy_along_z;
-        let t400 = minus_s_foot_along_z * gdrive_vy_along_z;
-        let t406 = gdrive_vy_along_z * parameters[66]
-            + gdrive_vy_along_z * parameters[67]
+        let t379 = c_foot_along_x
+            * (minus_s_foot_along_x * parameters[32]
+                - minus_gfoot_vy_along_x * parameters[31]) - minus_s_foot_along_x * t377;
+        let t380 = t370 + t379;
+        let t383 = 1.0 / c_left_bar_along_z;
+        let t384 = t275 * t383;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * t384;
+        let t390 = minus_s_foot_along_z * gdrive_vy_along_z;
+        let t396 = gdrive_vy_along_z * t198
             + c_foot_along_z
-                * (minus_gfoot_vy_along_z * parameters[73] + parameters[74] * t396)
+                * (minus_gfoot_vy_along_z * parameters[73] + parameters[74] * t218)
             + minus_s_foot_along_z
-                * (parameters[74] * t400 - minus_gfoot_vy_along_z * parameters[72]);
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t209;
-        let t409 = 3.225806451612903 * t400;
-        let t415 = minus_s_left_bar_along_z * t396;
-        let t418 = minus_s_left_bar_along_z * minus_gfoot_vy_along_z;
-        let t423 = t183
-            * (minus_gleft_bar_vy_along_z * parameters[82] - parameters[83] * t409
+                * (parameters[74] * t390 - minus_gfoot_vy_along_z * parameters[72]);
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t383;
+        let t399 = 3.225806451612903 * t390;
+        let t405 = minus_s_left_bar_along_z * t218;
+        let t408 = minus_s_left_bar_along_z * minus_gfoot_vy_along_z;
+        let t413 = t195
+            * (minus_gleft_bar_vy_along_z * parameters[82] - parameters[83] * t399
                 + minus_s_left_bar_along_z * parameters[84])
-            + t206
-                * (parameters[84] * t415
+            + t216
+                * (parameters[84] * t405
                     - (minus_gleft_bar_vy_along_z * parameters[81]
-                        + parameters[83] * t418));
-        let t424 = parameters[81] * t409;
-        let t444 = t183
-            * (minus_gleft_bar_vy_along_z * parameters[92] - parameters[93] * t409
+                        + parameters[83] * t408));
+        let t432 = t195
+            * (minus_gleft_bar_vy_along_z * parameters[92] - parameters[93] * t399
                 + minus_s_left_bar_along_z * parameters[94])
-            + t206
-                * (parameters[94] * t415
+            + t216
+                * (parameters[94] * t405
                     - (minus_gleft_bar_vy_along_z * parameters[91]
-                        + parameters[93] * t418));
-        let t445 = parameters[91] * t409;
-        let t452 = t406 + t423
-            - minus_s_foot_along_z
-                * (t424 + parameters[82] * t418 - parameters[84] * t400) + t444
-            - minus_s_foot_along_z
-                * (t445 + parameters[92] * t418 - parameters[94] * t400);
-        let t453 = minus_gfoot_vy_along_z * parameters[97];
-        let t455 = minus_gfoot_vy_along_z * parameters[96];
-        let t458 = t452 - (c_foot_along_z * t453 + minus_s_foot_along_z * t455);
-        let t474 = c_left_bar_along_z
-            * (parameters[76] * t418 - parameters[78] * t409
-                - minus_gleft_bar_vy_along_z * parameters[79] + 0.31 * t424
-                + minus_s_left_bar_along_z * parameters[83]);
-        let t484 = minus_s_left_bar_along_z
-            * (parameters[75] * t418 - parameters[76] * t409
-                - minus_gleft_bar_vy_along_z * parameters[77] - parameters[82] * t400
-                - parameters[83] * t415);
-        let t496 = c_left_bar_along_z
-            * (parameters[86] * t418 - parameters[88] * t409
-                - minus_gleft_bar_vy_along_z * parameters[89] + 0.31 * t445
-                + minus_s_left_bar_along_z * parameters[93]);
-        let t506 = minus_s_left_bar_along_z
-            * (parameters[85] * t418 - parameters[86] * t409
-                - minus_gleft_bar_vy_along_z * parameters[87] - parameters[92] * t400
-                - parameters[93] * t415);
-        let t512 = parameters[72] * t400 - minus_gfoot_vy_along_z * parameters[71]
-            - parameters[73] * t396 + t474 - t484 + t496 - t506
-            - (minus_gfoot_vy_along_z * parameters[95] + t178 * t455);
-        let t515 = t390 + t91 + gdrive_vx_along_z * t458 - minus_gfoot_vx_along_z * t512;
-        let t520 = c_foot_along_x * gdrive_vz_along_x;
-        let t524 = minus_s_foot_along_x * gdrive_vz_along_x;
-        let t530 = gdrive_vz_along_x * parameters[0] + gdrive_vz_along_x * parameters[1]
+                        + parameters[93] * t408));
+        let t438 = t396 + t413
+            - minus_s_foot_along_z * (t384 * t225 - parameters[84] * t390) + t432
+            - minus_s_foot_along_z * (t384 * t240 - parameters[94] * t390);
+        let t440 = t438 + t384 * t254;
+        let t463 = c_left_bar_along_z
+            * (t384 * t264 - minus_gleft_bar_vy_along_z * parameters[79]
+                + parameters[81] * t390 + minus_s_left_bar_along_z * parameters[83])
+            - minus_s_left_bar_along_z
+                * (t384 * t272 - minus_gleft_bar_vy_along_z * parameters[77]
+                    - parameters[82] * t390 - parameters[83] * t405);
+        let t481 = c_left_bar_along_z
+            * (t384 * t283 - minus_gleft_bar_vy_along_z * parameters[89]
+                + parameters[91] * t390 + minus_s_left_bar_along_z * parameters[93])
+            - minus_s_left_bar_along_z
+                * (t384 * t291 - minus_gleft_bar_vy_along_z * parameters[87]
+                    - parameters[92] * t390 - parameters[93] * t405);
+        let t486 = parameters[72] * t390 - minus_gfoot_vy_along_z * parameters[71]
+            - parameters[73] * t218 + t463 + t481
+            - (minus_gfoot_vy_along_z * parameters[95] + parameters[96] * t390);
+        let t489 = t380 + t96 + gdrive_vx_along_z * t440 - minus_gfoot_vx_along_z * t486;
+        let t491 = minus_s_left_bar_along_x * minus_s_foot_along_x;
+        let t492 = 1.0 / c_left_bar_along_x;
+        let t493 = t491 * t492;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * t493;
+        let t499 = minus_s_foot_along_x * gdrive_vz_along_x;
+        let t505 = t0 * gdrive_vz_along_x
             + c_foot_along_x
-                * (minus_gfoot_vz_along_x * parameters[7] + parameters[8] * t520)
+                * (minus_gfoot_vz_along_x * parameters[7] + parameters[8] * t343)
             + minus_s_foot_along_x
-                * (parameters[8] * t524 - minus_gfoot_vz_along_x * parameters[6]);
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t345;
-        let t533 = 3.225806451612903 * t524;
-        let t539 = minus_s_left_bar_along_x * t520;
-        let t542 = minus_s_left_bar_along_x * minus_gfoot_vz_along_x;
-        let t547 = t319
-            * (minus_gleft_bar_vz_along_x * parameters[16] - parameters[17] * t533
+                * (parameters[8] * t499 - minus_gfoot_vz_along_x * parameters[6]);
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t492;
+        let t508 = 3.225806451612903 * t499;
+        let t514 = minus_s_left_bar_along_x * t343;
+        let t517 = minus_s_left_bar_along_x * minus_gfoot_vz_along_x;
+        let t522 = t320
+            * (minus_gleft_bar_vz_along_x * parameters[16] - parameters[17] * t508
                 + minus_s_left_bar_along_x * parameters[18])
-            + t342
-                * (parameters[18] * t539
+            + t341
+                * (parameters[18] * t514
                     - (minus_gleft_bar_vz_along_x * parameters[15]
-                        + parameters[17] * t542));
-        let t548 = parameters[15] * t533;
-        let t568 = t319
-            * (minus_gleft_bar_vz_along_x * parameters[26] - parameters[27] * t533
+                        + parameters[17] * t517));
+        let t541 = t320
+            * (minus_gleft_bar_vz_along_x * parameters[26] - parameters[27] * t508
                 + minus_s_left_bar_along_x * parameters[28])
-            + t342
-                * (parameters[28] * t539
+            + t341
+                * (parameters[28] * t514
                     - (minus_gleft_bar_vz_along_x * parameters[25]
-                        + parameters[27] * t542));
-        let t569 = parameters[25] * t533;
-        let t576 = t530 + t547
-            - minus_s_foot_along_x
-                * (t548 + parameters[16] * t542 - parameters[18] * t524) + t568
-            - minus_s_foot_along_x
-                * (t569 + parameters[26] * t542 - parameters[28] * t524);
-        let t577 = minus_gfoot_vz_along_x * parameters[31];
-        let t579 = minus_gfoot_vz_along_x * parameters[30];
-        let t582 = t576 - (c_foot_along_x * t577 + minus_s_foot_along_x * t579);
+                        + parameters[27] * t517));
+        let t547 = t505 + t522
+            - minus_s_foot_along_x * (t493 * t350 - parameters[18] * t499) + t541
+            - minus_s_foot_along_x * (t493 * t365 - parameters[28] * t499);
+        let t549 = t547 + t493 * t379;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t591 = minus_s_foot_along_y * gdrive_vz_along_y;
-        let t597 = gdrive_vz_along_y * parameters[33]
-            + gdrive_vz_along_y * parameters[34]
+        let t556 = minus_s_foot_along_y * gdrive_vz_along_y;
+        let t562 = gdrive_vz_along_y * t17
             + c_foot_along_y
                 * (minus_gfoot_vz_along_y * parameters[40]
                     + minus_s_foot_along_y * parameters[41])
             + minus_s_foot_along_y
-                * (parameters[41] * t591 - minus_gfoot_vz_along_y * parameters[39]);
-        let t599 = c_left_bar_along_y * minus_gfoot_vz_along_y;
-        let t604 = 3.225806451612903 * gdrive_vx_along_y;
-        let t615 = t14
-            * (minus_s_left_bar_along_x * parameters[51] - parameters[50] * t599)
-            + t22 * (t17 * parameters[51] - parameters[50] * t604)
-            - minus_s_foot_along_y
-                * (parameters[48] * t599 + parameters[49] * t604
-                    - parameters[51] * t591);
-        let t632 = t14
-            * (minus_s_left_bar_along_x * parameters[61] - parameters[60] * t599)
-            + t22 * (t17 * parameters[61] - parameters[60] * t604)
-            - minus_s_foot_along_y
-                * (parameters[58] * t599 + parameters[59] * t604
-                    - parameters[61] * t591);
-        let t636 = minus_s_foot_along_y * parameters[65]
-            - minus_gfoot_vz_along_y * parameters[64];
-        let t640 = minus_gfoot_vz_along_y * parameters[63]
-            + c_foot_along_y * parameters[65];
-        let t643 = t597 + t615 + t632 + c_foot_along_y * t636
-            - minus_s_foot_along_y * t640;
-        let t666 = c_left_bar_along_y
-            * (parameters[43] * t604 - parameters[45] * t599 + parameters[48] * t591
-                + minus_s_left_bar_along_x * parameters[50])
+                * (parameters[41] * t556 - minus_gfoot_vz_along_y * parameters[39]);
+        let t565 = minus_s_left_bar_along_x * parameters[51] - parameters[50] * t53;
+        let t577 = minus_s_left_bar_along_x * parameters[61] - parameters[60] * t53;
+        let t586 = t562 + t14 * t565 + t43 * (t24 * t565)
+            - minus_s_foot_along_y * (t57 - parameters[51] * t556) + t14 * t577
+            + t43 * (t24 * t577) - minus_s_foot_along_y * (t79 - parameters[61] * t556);
+        let t587 = t586 + t94;
+        let t604 = c_left_bar_along_y
+            * (t105 + parameters[48] * t556 + minus_s_left_bar_along_x * parameters[50])
             - minus_s_left_bar_along_y
-                * (parameters[42] * t604 - parameters[43] * t599 - parameters[49] * t591
-                    - t17 * parameters[50]);
-        let t684 = c_left_bar_along_y
-            * (parameters[53] * t604 - parameters[55] * t599 + parameters[58] * t591
-                + minus_s_left_bar_along_x * parameters[60])
+                * (t116 - parameters[49] * t556 - t19 * parameters[50]);
+        let t616 = c_left_bar_along_y
+            * (t129 + parameters[58] * t556 + minus_s_left_bar_along_x * parameters[60])
             - minus_s_left_bar_along_y
-                * (parameters[52] * t604 - parameters[53] * t599 - parameters[59] * t591
-                    - t17 * parameters[60]);
-        let t693 = parameters[39] * t591 - minus_gfoot_vz_along_y * parameters[38]
-            - minus_s_foot_along_y * parameters[40] + t666 + t684
+                * (t140 - parameters[59] * t556 - t19 * parameters[60]);
+        let t625 = parameters[39] * t556 - minus_gfoot_vz_along_y * parameters[38]
+            - minus_s_foot_along_y * parameters[40] + t604 + t616
             + minus_s_foot_along_y * parameters[64]
             - (minus_gfoot_vz_along_y * parameters[62] + c_foot_along_y * parameters[63])
-            - t9 * t640;
-        let t710 = parameters[44] * t604 - parameters[46] * t599 + t17 * parameters[48]
-            - minus_s_left_bar_along_x * parameters[49] + parameters[54] * t604
-            - parameters[56] * t599 + t17 * parameters[58]
-            - minus_s_left_bar_along_x * parameters[59];
-        let t716 = t582 + gdrive_vx_along_y * t643 - minus_gfoot_vx_along_y * t693
-            - minus_gleft_bar_vx_along_y * (t710 + pose[0] * t636) + t254;
-        let t739 = c_left_bar_along_x
-            * (parameters[10] * t351 - parameters[12] * t337 + parameters[15] * t329
-                + minus_s_left_bar_along_z * parameters[17])
+            - t9 * t92;
+        let t638 = t159 + t19 * parameters[48]
+            - minus_s_left_bar_along_x * parameters[49] + t169 + t19 * parameters[58]
+            - minus_s_left_bar_along_x * parameters[59] + pose[0] * t88;
+        let t642 = t549 + gdrive_vx_along_y * t587 - minus_gfoot_vx_along_y * t625
+            - minus_gleft_bar_vx_along_y * t638 + t255;
+        let t651 = parameters[10] * t348 - parameters[12] * t336;
+        let t659 = parameters[9] * t348 - parameters[10] * t336;
+        let t665 = c_left_bar_along_x
+            * (t651 + parameters[15] * t328 + minus_s_left_bar_along_z * parameters[17])
             - minus_s_left_bar_along_x
-                * (parameters[9] * t351 - parameters[10] * t337 - parameters[16] * t329
-                    - t343 * parameters[17]);
-        let t757 = c_left_bar_along_x
-            * (parameters[20] * t351 - parameters[22] * t337 + parameters[25] * t329
-                + minus_s_left_bar_along_z * parameters[27])
+                * (t659 - parameters[16] * t328 - t491 * parameters[17]);
+        let t669 = parameters[20] * t348 - parameters[22] * t336;
+        let t677 = parameters[19] * t348 - parameters[20] * t336;
+        let t683 = c_left_bar_along_x
+            * (t669 + parameters[25] * t328 + minus_s_left_bar_along_z * parameters[27])
             - minus_s_left_bar_along_x
-                * (parameters[19] * t351 - parameters[20] * t337 - parameters[26] * t329
-                    - t343 * parameters[27]);
-        let t766 = parameters[6] * t329 - minus_gfoot_vy_along_x * parameters[5]
-            - minus_s_foot_along_x * parameters[7] + t739 + t757
+                * (t677 - parameters[26] * t328 - t491 * parameters[27]);
+        let t692 = parameters[6] * t328 - minus_gfoot_vy_along_x * parameters[5]
+            - minus_s_foot_along_x * parameters[7] + t665 + t683
             + minus_s_foot_along_x * parameters[31]
             - (minus_gfoot_vy_along_x * parameters[29] + c_foot_along_x * parameters[30])
-            - t314 * t387;
-        let t796 = parameters[77] * t418 - parameters[79] * t409
-            - minus_gleft_bar_vy_along_z * parameters[80] + parameters[81] * t415
-            - minus_s_left_bar_along_z * parameters[82] + parameters[87] * t418
-            - parameters[89] * t409 - minus_gleft_bar_vy_along_z * parameters[90]
-            + parameters[91] * t415 - minus_s_left_bar_along_z * parameters[92];
-        let t803 = gdrive_vy_along_x * t390 - minus_gfoot_vy_along_x * t766
-            + parameters[33] + parameters[34] + parameters[41] + parameters[51]
-            + parameters[61] + parameters[65] + gdrive_vy_along_z * t458
-            - minus_gfoot_vy_along_z * t512
+            - t315 * t377;
+        let t721 = parameters[77] * t408 - parameters[79] * t399
+            - minus_gleft_bar_vy_along_z * parameters[80] + parameters[81] * t405
+            - minus_s_left_bar_along_z * parameters[82] + parameters[87] * t408
+            - parameters[89] * t399 - minus_gleft_bar_vy_along_z * parameters[90]
+            + parameters[91] * t405 - minus_s_left_bar_along_z * parameters[92];
+        let t728 = gdrive_vy_along_z * t440 - minus_gfoot_vy_along_z * t486
             - minus_gleft_bar_vy_along_z
-                * (t796 - (pose[1] * t453 + t178 * parameters[98]));
-        let t820 = c_left_bar_along_x
-            * (parameters[10] * t542 - parameters[12] * t533
-                - minus_gleft_bar_vz_along_x * parameters[13] + 0.31 * t548
-                + minus_s_left_bar_along_x * parameters[17]);
-        let t830 = minus_s_left_bar_along_x
-            * (parameters[9] * t542 - parameters[10] * t533
-                - minus_gleft_bar_vz_along_x * parameters[11] - parameters[16] * t524
-                - parameters[17] * t539);
-        let t842 = c_left_bar_along_x
-            * (parameters[20] * t542 - parameters[22] * t533
-                - minus_gleft_bar_vz_along_x * parameters[23] + 0.31 * t569
-                + minus_s_left_bar_along_x * parameters[27]);
-        let t852 = minus_s_left_bar_along_x
-            * (parameters[19] * t542 - parameters[20] * t533
-                - minus_gleft_bar_vz_along_x * parameters[21] - parameters[26] * t524
-                - parameters[27] * t539);
-        let t858 = parameters[6] * t524 - minus_gfoot_vz_along_x * parameters[5]
-            - parameters[7] * t520 + t820 - t830 + t842 - t852
-            - (minus_gfoot_vz_along_x * parameters[29] + t314 * t579);
-        let t862 = gdrive_vy_along_x * t582 - minus_gfoot_vy_along_x * t858 + t643
-            + t458;
-        let t884 = parameters[11] * t542 - parameters[13] * t533
-            - minus_gleft_bar_vz_along_x * parameters[14] + parameters[15] * t539
-            - minus_s_left_bar_along_x * parameters[16] + parameters[21] * t542
-            - parameters[23] * t533 - minus_gleft_bar_vz_along_x * parameters[24]
-            + parameters[25] * t539 - minus_s_left_bar_along_x * parameters[26];
-        let t894 = gdrive_vz_along_x * t582 - minus_gfoot_vz_along_x * t858
+                * (t721
+                    - (pose[1] * (minus_gfoot_vy_along_z * parameters[97])
+                        + t190 * parameters[98]));
+        let t730 = gdrive_vy_along_x * t380 - minus_gfoot_vy_along_x * t692 + t17
+            + parameters[41] + parameters[51] + parameters[61] + parameters[65] + t728
+            + t310;
+        let t753 = c_left_bar_along_x
+            * (t493 * t651 - minus_gleft_bar_vz_along_x * parameters[13]
+                + parameters[15] * t499 + minus_s_left_bar_along_x * parameters[17])
+            - minus_s_left_bar_along_x
+                * (t493 * t659 - minus_gleft_bar_vz_along_x * parameters[11]
+                    - parameters[16] * t499 - parameters[17] * t514);
+        let t771 = c_left_bar_along_x
+            * (t493 * t669 - minus_gleft_bar_vz_along_x * parameters[23]
+                + parameters[25] * t499 + minus_s_left_bar_along_x * parameters[27])
+            - minus_s_left_bar_along_x
+                * (t493 * t677 - minus_gleft_bar_vz_along_x * parameters[21]
+                    - parameters[26] * t499 - parameters[27] * t514);
+        let t776 = parameters[6] * t499 - minus_gfoot_vz_along_x * parameters[5]
+            - parameters[7] * t343 + t753 + t771
+            - (minus_gfoot_vz_along_x * parameters[29] + parameters[30] * t499);
+        let t780 = gdrive_vy_along_x * t549 - minus_gfoot_vy_along_x * t776 + t587
+            + t440;
+        let t802 = parameters[11] * t517 - parameters[13] * t508
+            - minus_gleft_bar_vz_along_x * parameters[14] + parameters[15] * t514
+            - minus_s_left_bar_along_x * parameters[16] + parameters[21] * t517
+            - parameters[23] * t508 - minus_gleft_bar_vz_along_x * parameters[24]
+            + parameters[25] * t514 - minus_s_left_bar_along_x * parameters[26];
+        let t809 = gdrive_vz_along_x * t549 - minus_gfoot_vz_along_x * t776
             - minus_gleft_bar_vz_along_x
-                * (t884 - (pose[2] * t577 + t314 * parameters[32]))
-            + gdrive_vz_along_y * t643 - minus_gfoot_vz_along_y * t693;
-        Ok([
-            [
-                t173 + gdrive_vx_along_z * t254 - minus_gfoot_vx_along_z * t304 + t308, t515, t716,
-            ],
-            [t515, t803 + t308, t862],
-            [
-                t716, t862,
-                t894 + parameters[66] + parameters[67] + parameters[74] + parameters[84]
-                    + parameters[94] + parameters[98] + t308,
-            ],
-        ])
+                * (t802
+                    - (pose[2] * (minus_gfoot_vz_along_x * parameters[31])
+                        + t315 * parameters[32]));
+        let t819 = t809 + gdrive_vz_along_y * t587 - minus_gfoot_vz_along_y * t625 + t198
+            + parameters[74] + parameters[84] + parameters[94] + parameters[98] + t310;
+        Ok([[t311, t489, t642], [t489, t730, t780], [t642, t780, t819]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -8499,7 +7752,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 899 operations (378 additions, 512 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 905 intermediates.
+    /// 864 operations (369 additions, 486 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 870 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8508,13 +7761,16 @@ impl Orthoglide {
         twist: &[f64; 3],
         parameters: &[f64; 101],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t1 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t4 = 0.31 * c_left_bar_along_x;
         let minus_s_foot_along_x = pose[1] / t4;
-        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
@@ -8524,387 +7780,392 @@ impl Orthoglide {
         let t12 = 1.0 / c_left_bar_along_x;
         let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t15 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
-        let t17 = c_foot_along_x * minus_rate_left_bar_along_x;
-        let t19 = t15 * t15 + t17 * t17;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t15 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t17 = minus_s_left_bar_along_x * c_foot_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_s_left_bar_along_x * minus_s_foot_along_x * t12);
+            * (gdrive_vy_along_x * (t17 * t12));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t27 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t28 = t19 + t27;
-        let t31 = pose[2] * (minus_rate_foot_along_x * t17);
-        let t33 = pose[1] * t28 + t31 + t31;
-        let t36 = pose[2] * (minus_rate_foot_along_x * t15);
-        let t43 = minus_s_left_bar_along_x * c_foot_along_x;
-        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t43 * t12;
-        let t46 = pose[2] * minus_rate_foot_along_x;
-        let t49 = minus_rate_foot_along_x * t46 - pose[2] * t28;
-        let rate_dot_drive_along_x = gdrive_vy_along_x * t33
-            - (t36 - 0.31 * t9 * t28 + t36) - gdrive_vz_along_x * t49;
+        let t23 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t24 = t15 + t23;
+        let t27 = pose[2] * minus_rate_foot_along_x;
+        let t28 = c_foot_along_x * minus_rate_left_bar_along_x * t27;
+        let t30 = pose[1] * t24 + t28 + t28;
+        let t32 = gdrive_vy_along_x * t28;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t39 = pose[2] * t15;
+        let rate_dot_drive_along_x = gdrive_vy_along_x * t30
+            - (t32 - 0.31 * t9 * t24 + t32) + gdrive_vz_along_x * t39;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
-        let t64 = c_foot_along_x * rate_dot_drive_along_x;
-        let rate_dot_foot_along_x = minus_gfoot_vz_along_x * t49
-            - minus_gfoot_vy_along_x * t33;
-        let t77 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t81 = c_foot_along_x
-            * (parameters[8] * t64
-                - (parameters[6] * t27 + parameters[7] * rate_dot_foot_along_x))
+        let t54 = c_foot_along_x * rate_dot_drive_along_x;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vz_along_x * t39
+            + minus_gfoot_vy_along_x * t30;
+        let t67 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t71 = c_foot_along_x
+            * (parameters[8] * t54
+                - (parameters[6] * t23 - parameters[7] * minus_rate_dot_foot_along_x))
             + minus_s_foot_along_x
-                * (parameters[6] * rate_dot_foot_along_x - parameters[7] * t27
-                    + parameters[8] * t77);
-        let t83 = c_left_bar_along_x * rate_dot_foot_along_x;
-        let t85 = c_left_bar_along_x * t64;
-        let t86 = 3.225806451612903 * t85;
-        let t88 = 3.225806451612903 * t46;
-        let t89 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t90 = t88 * t89;
-        let rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t49;
-        let t92 = t90 + rate_dot_left_bar_along_x;
-        let t97 = t85 + 31.64516129032258 * pose[2];
-        let t101 = minus_s_left_bar_along_x * rate_dot_foot_along_x;
-        let t103 = minus_s_left_bar_along_x * t64;
-        let t104 = 3.225806451612903 * t103;
-        let t107 = 10.40582726326743 * (t46 * t46);
-        let t108 = t107 + t19;
-        let t113 = t103 - 9.81 * c_left_bar_along_x;
-        let t117 = t9
-            * (parameters[17] * t83 - (parameters[15] * t86 + parameters[16] * t92)
-                + parameters[18] * t97)
-            + t43
-                * (parameters[17] * t101
-                    - (parameters[15] * t104 + parameters[16] * t108)
-                    + parameters[18] * t113);
-        let t118 = 3.225806451612903 * t77;
-        let t119 = parameters[15] * t118;
-        let t120 = minus_rate_left_bar_along_x * t89;
-        let t121 = t120 - t101;
-        let t122 = t120 + t121;
-        let t131 = parameters[0] * rate_dot_drive_along_x
+                * (parameters[8] * t67
+                    - (parameters[6] * minus_rate_dot_foot_along_x
+                        + parameters[7] * t23));
+        let t73 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t75 = c_left_bar_along_x * t54;
+        let t76 = 3.225806451612903 * t75;
+        let t78 = 3.225806451612903 * t27;
+        let t79 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t80 = t78 * t79;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t39;
+        let t82 = t80 - minus_rate_dot_left_bar_along_x;
+        let t87 = t75 + 31.64516129032258 * pose[2];
+        let t91 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t93 = minus_s_left_bar_along_x * t54;
+        let t94 = 3.225806451612903 * t93;
+        let t96 = t1 * t23;
+        let t97 = t96 + t15;
+        let t102 = t93 - 9.81 * c_left_bar_along_x;
+        let t106 = t9
+            * (parameters[18] * t87
+                - (parameters[17] * t73 + parameters[15] * t76 + parameters[16] * t82))
+            + t17
+                * (parameters[18] * t102
+                    - (parameters[17] * t91 + parameters[15] * t94
+                        + parameters[16] * t97));
+        let t107 = 3.225806451612903 * t67;
+        let t108 = parameters[15] * t107;
+        let t109 = minus_rate_left_bar_along_x * t79;
+        let t110 = t109 + t91;
+        let t111 = t109 + t110;
+        let t120 = parameters[0] * rate_dot_drive_along_x
             + parameters[1] * rate_dot_drive_along_x + parameters[2] * rate_drive_along_x
             + ::overact::math::signed(parameters[3], rate_drive_along_x) + parameters[4]
-            + t81 + t117
+            + t71 + t106
             - minus_s_foot_along_x
-                * (t119 + parameters[16] * t122 - parameters[17] * t27
-                    - parameters[18] * t77);
-        let t148 = t9
-            * (parameters[27] * t83 - (parameters[25] * t86 + parameters[26] * t92)
-                + parameters[28] * t97)
-            + t43
-                * (parameters[27] * t101
-                    - (parameters[25] * t104 + parameters[26] * t108)
-                    + parameters[28] * t113);
-        let t149 = parameters[25] * t118;
-        let t161 = parameters[31] * rate_dot_foot_along_x - parameters[30] * t27;
-        let t165 = parameters[30] * rate_dot_foot_along_x + parameters[31] * t27;
-        let t168 = t131 + t148
+                * (t108 + parameters[16] * t111 - parameters[17] * t23
+                    - parameters[18] * t67);
+        let t137 = t9
+            * (parameters[28] * t87
+                - (parameters[27] * t73 + parameters[25] * t76 + parameters[26] * t82))
+            + t17
+                * (parameters[28] * t102
+                    - (parameters[27] * t91 + parameters[25] * t94
+                        + parameters[26] * t97));
+        let t138 = parameters[25] * t107;
+        let t150 = parameters[31] * minus_rate_dot_foot_along_x + parameters[30] * t23;
+        let t154 = parameters[31] * t23 - parameters[30] * minus_rate_dot_foot_along_x;
+        let t157 = t120 + t137
             - minus_s_foot_along_x
-                * (t149 + parameters[26] * t122 - parameters[27] * t27
-                    - parameters[28] * t77) + c_foot_along_x * t161
-            + minus_s_foot_along_x * t165;
-        let t171 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
-        ::overact::guard::reach(t171, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t171);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t173 = 0.31 * c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] / t173;
-        let t176 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t176, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t176);
-        let t178 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t178, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t178;
+                * (t138 + parameters[26] * t111 - parameters[27] * t23
+                    - parameters[28] * t67) + minus_s_foot_along_x * t154
+            - c_foot_along_x * t150;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t182 = 1.0 / c_left_bar_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * minus_s_foot_along_y * t182);
-        let t186 = minus_s_left_bar_along_y * c_foot_along_y;
-        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t186 * t182;
+        let t159 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t160 = 1.0 - t159;
+        ::overact::guard::reach(t160, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t160);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let t162 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t162;
+        let t165 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t165, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t165);
+        let t167 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t167, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t167;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t171 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t172 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (t171 * t172 * gdrive_vz_along_y);
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t193 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t182;
+        let t179 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t172;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t196 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t199 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t201 = t193 + t196 * t196 + t199 * t199;
-        let t204 = pose[0] * (minus_rate_foot_along_y * t199);
-        let t206 = pose[2] * t201 + t204 + t204;
-        let t208 = pose[0] * minus_rate_foot_along_y;
-        let t211 = minus_rate_foot_along_y * t208 - pose[0] * t201;
-        let t214 = pose[0] * (minus_rate_foot_along_y * t196);
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t206
-            - (gdrive_vx_along_y * t211 + t214 - 0.31 * t178 * t201 + t214);
+        let t182 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t183 = t179 + t182;
+        let t186 = pose[0] * minus_rate_foot_along_y;
+        let t187 = c_foot_along_y * minus_rate_left_bar_along_y * t186;
+        let t189 = pose[2] * t183 + t187 + t187;
+        let t191 = pose[0] * t182;
+        let t193 = gdrive_vz_along_y * t187;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t189
+            - (t193 - 0.31 * t167 * t183 + t193 - gdrive_vx_along_y * t191);
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
-        let t233 = 9.81 * minus_s_foot_along_y;
-        let t235 = t233 + c_foot_along_y * rate_dot_drive_along_y;
-        let rate_dot_foot_along_y = minus_gfoot_vx_along_y * t211
-            - minus_gfoot_vz_along_y * t206;
-        let t248 = minus_s_foot_along_y * rate_dot_drive_along_y;
-        let t249 = 9.81 * c_foot_along_y;
-        let t250 = t248 - t249;
-        let t254 = c_foot_along_y
-            * (parameters[41] * t235
-                - (parameters[39] * t193 + parameters[40] * rate_dot_foot_along_y))
+        let t212 = 9.81 * minus_s_foot_along_y;
+        let t214 = t212 + c_foot_along_y * rate_dot_drive_along_y;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t191
+            + minus_gfoot_vz_along_y * t189;
+        let t227 = minus_s_foot_along_y * rate_dot_drive_along_y;
+        let t228 = 9.81 * c_foot_along_y;
+        let t229 = t227 - t228;
+        let t233 = c_foot_along_y
+            * (parameters[41] * t214
+                - (parameters[39] * t179 - parameters[40] * minus_rate_dot_foot_along_y))
             + minus_s_foot_along_y
-                * (parameters[39] * rate_dot_foot_along_y - parameters[40] * t193
-                    + parameters[41] * t250);
-        let t256 = c_left_bar_along_y * rate_dot_foot_along_y;
-        let t258 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t259 = t258 * t258;
-        let t260 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t261 = t259 + t260;
-        let t263 = 3.225806451612903 * t208;
-        let t264 = t263 * t258;
-        let rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t211;
-        let t266 = t264 + rate_dot_left_bar_along_y;
-        let t270 = c_left_bar_along_y * t235;
-        let t274 = rate_dot_left_bar_along_y - t264;
-        let t277 = 10.40582726326743 * (t208 * t208);
-        let t278 = t277 + t260;
-        let t281 = minus_s_left_bar_along_y * rate_dot_foot_along_y;
-        let t284 = minus_s_left_bar_along_y * t235;
-        let t288 = t178
-            * (parameters[50] * t256 - (parameters[48] * t261 + parameters[49] * t266)
-                + parameters[51] * t270)
-            + t186
-                * (parameters[48] * t274 - parameters[49] * t278 + parameters[50] * t281
-                    + parameters[51] * t284);
-        let t289 = 3.225806451612903 * t248;
-        let t291 = minus_rate_left_bar_along_y * t258;
-        let t292 = t291 - t281;
-        let t293 = t291 + t292;
-        let t302 = parameters[33] * rate_dot_drive_along_y
+                * (parameters[41] * t229
+                    - (parameters[39] * minus_rate_dot_foot_along_y
+                        + parameters[40] * t179));
+        let t235 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t237 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t238 = t237 * t237;
+        let t239 = t238 + t182;
+        let t241 = 3.225806451612903 * t186;
+        let t242 = t241 * t237;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t191;
+        let t244 = t242 - minus_rate_dot_left_bar_along_y;
+        let t248 = c_left_bar_along_y * t214;
+        let t252 = minus_rate_dot_left_bar_along_y + t242;
+        let t254 = t159 * t179;
+        let t255 = t254 + t182;
+        let t258 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t261 = minus_s_left_bar_along_y * t214;
+        let t265 = t167
+            * (parameters[51] * t248
+                - (parameters[50] * t235 + parameters[48] * t239
+                    + parameters[49] * t244))
+            + t171
+                * (parameters[51] * t261
+                    - (parameters[48] * t252 + parameters[49] * t255
+                        + parameters[50] * t258));
+        let t266 = 3.225806451612903 * t227;
+        let t268 = minus_rate_left_bar_along_y * t237;
+        let t269 = t268 + t258;
+        let t270 = t268 + t269;
+        let t279 = parameters[33] * rate_dot_drive_along_y
             + parameters[34] * rate_dot_drive_along_y
             + parameters[35] * rate_drive_along_y
             + ::overact::math::signed(parameters[36], rate_drive_along_y)
-            + parameters[37] + t254 + t288
+            + parameters[37] + t233 + t265
             - minus_s_foot_along_y
-                * (parameters[48] * t289 + parameters[49] * t293 - parameters[50] * t193
-                    - parameters[51] * t250);
-        let t319 = t178
-            * (parameters[60] * t256 - (parameters[58] * t261 + parameters[59] * t266)
-                + parameters[61] * t270)
-            + t186
-                * (parameters[58] * t274 - parameters[59] * t278 + parameters[60] * t281
-                    + parameters[61] * t284);
-        let t329 = t302 + t319
+                * (parameters[48] * t266 + parameters[49] * t270 - parameters[50] * t179
+                    - parameters[51] * t229);
+        let t296 = t167
+            * (parameters[61] * t248
+                - (parameters[60] * t235 + parameters[58] * t239
+                    + parameters[59] * t244))
+            + t171
+                * (parameters[61] * t261
+                    - (parameters[58] * t252 + parameters[59] * t255
+                        + parameters[60] * t258));
+        let t306 = t279 + t296
             - minus_s_foot_along_y
-                * (parameters[58] * t289 + parameters[59] * t293 - parameters[60] * t193
-                    - parameters[61] * t250);
-        let t334 = parameters[64] * rate_dot_foot_along_y - parameters[63] * t193
-            + parameters[65] * t233;
-        let t340 = parameters[65] * t249
-            - (parameters[63] * rate_dot_foot_along_y + parameters[64] * t193);
-        let t343 = t329 + c_foot_along_y * t334 - minus_s_foot_along_y * t340;
-        let t351 = minus_rate_left_bar_along_y * t263;
-        let t354 = t260 - t277;
-        let t357 = t256 + t351;
-        let t363 = parameters[43] * t293 - parameters[42] * t351 + parameters[44] * t354
-            + parameters[45] * t357 + parameters[46] * t266 + parameters[47] * t351;
-        let t376 = t259 - t260;
-        let t380 = parameters[42] * t292 - parameters[43] * t289 + parameters[44] * t274
-            - parameters[45] * t291 + parameters[46] * t376 + parameters[47] * t291;
-        let t386 = c_left_bar_along_y
-            * (t363 + parameters[48] * t250 + parameters[50] * t270)
+                * (parameters[58] * t266 + parameters[59] * t270 - parameters[60] * t179
+                    - parameters[61] * t229);
+        let t311 = parameters[65] * t212
+            - (parameters[64] * minus_rate_dot_foot_along_y + parameters[63] * t179);
+        let t317 = parameters[65] * t228
+            - (parameters[64] * t179 - parameters[63] * minus_rate_dot_foot_along_y);
+        let t320 = t306 + c_foot_along_y * t311 - minus_s_foot_along_y * t317;
+        let t328 = minus_rate_left_bar_along_y * t241;
+        let t331 = t182 - t254;
+        let t334 = t328 - t235;
+        let t340 = parameters[43] * t270 - parameters[42] * t328 + parameters[44] * t331
+            + parameters[45] * t334 + parameters[46] * t244 + parameters[47] * t328;
+        let t353 = t238 - t182;
+        let t357 = parameters[42] * t269 - parameters[43] * t266 - parameters[44] * t252
+            - parameters[45] * t268 + parameters[46] * t353 + parameters[47] * t268;
+        let t363 = c_left_bar_along_y
+            * (t340 + parameters[48] * t229 + parameters[50] * t248)
             - minus_s_left_bar_along_y
-                * (t380 - parameters[49] * t250 - parameters[50] * t284);
-        let t398 = parameters[53] * t293 - parameters[52] * t351 + parameters[54] * t354
-            + parameters[55] * t357 + parameters[56] * t266 + parameters[57] * t351;
-        let t414 = parameters[52] * t292 - parameters[53] * t289 + parameters[54] * t274
-            - parameters[55] * t291 + parameters[56] * t376 + parameters[57] * t291;
-        let t420 = c_left_bar_along_y
-            * (t398 + parameters[58] * t250 + parameters[60] * t270)
+                * (t357 - parameters[49] * t229 - parameters[50] * t261);
+        let t375 = parameters[53] * t270 - parameters[52] * t328 + parameters[54] * t331
+            + parameters[55] * t334 + parameters[56] * t244 + parameters[57] * t328;
+        let t391 = parameters[52] * t269 - parameters[53] * t266 - parameters[54] * t252
+            - parameters[55] * t268 + parameters[56] * t353 + parameters[57] * t268;
+        let t397 = c_left_bar_along_y
+            * (t375 + parameters[58] * t229 + parameters[60] * t248)
             - minus_s_left_bar_along_y
-                * (t414 - parameters[59] * t250 - parameters[60] * t284);
-        let t429 = parameters[38] * rate_dot_foot_along_y + parameters[39] * t250
-            - parameters[40] * t235 + t386 + t420
-            + parameters[62] * rate_dot_foot_along_y - parameters[63] * t249
-            + parameters[64] * t233 - t173 * t340;
-        let t433 = t277 - t259;
-        let t443 = parameters[42] * t264 + parameters[43] * t433 - parameters[44] * t281
-            - parameters[45] * t264 + parameters[46] * t256
-            + parameters[47] * rate_dot_left_bar_along_y;
-        let t458 = parameters[52] * t264 + parameters[53] * t433 - parameters[54] * t281
-            - parameters[55] * t264 + parameters[56] * t256
-            + parameters[57] * rate_dot_left_bar_along_y;
-        let t465 = t443 + parameters[48] * t284 - parameters[49] * t270 + t458
-            + parameters[58] * t284 - parameters[59] * t270 + pose[0] * t334;
-        let t471 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
-        ::overact::guard::reach(t471, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t471);
+                * (t391 - parameters[59] * t229 - parameters[60] * t261);
+        let t406 = parameters[39] * t229 - parameters[38] * minus_rate_dot_foot_along_y
+            - parameters[40] * t214 + t363 + t397 + parameters[64] * t212
+            - (parameters[62] * minus_rate_dot_foot_along_y + parameters[63] * t228)
+            - t162 * t317;
+        let t410 = t254 - t238;
+        let t420 = parameters[42] * t242 + parameters[43] * t410 + parameters[44] * t258
+            - parameters[45] * t242 - parameters[46] * t235
+            - parameters[47] * minus_rate_dot_left_bar_along_y;
+        let t435 = parameters[52] * t242 + parameters[53] * t410 + parameters[54] * t258
+            - parameters[55] * t242 - parameters[56] * t235
+            - parameters[57] * minus_rate_dot_left_bar_along_y;
+        let t442 = t420 + parameters[48] * t261 - parameters[49] * t248 + t435
+            + parameters[58] * t261 - parameters[59] * t248 + pose[0] * t311;
+        let t446 = t2 * t6;
+        let t447 = 1.0 - t446;
+        ::overact::guard::reach(t447, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t447);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t473 = 0.31 * c_left_bar_along_z;
-        let minus_s_foot_along_z = pose[0] / t473;
-        let t476 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t476, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t476);
-        let t478 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t478, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t478;
+        let t449 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t449;
+        let t452 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t452, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t452);
+        let t454 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t454, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t454;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t481 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t481;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t484 = c_foot_along_z * minus_rate_left_bar_along_z;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t459 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t460 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_s_left_bar_along_z * minus_s_foot_along_z * t481);
+            * (gdrive_vx_along_z * (t459 * t460));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t493 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t495 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t497 = t484 * t484 + t493 + t495 * t495;
-        let t500 = pose[1] * (minus_rate_foot_along_z * t484);
-        let t502 = pose[0] * t497 + t500 + t500;
-        let t505 = minus_s_left_bar_along_z * c_foot_along_z;
-        let gdrive_vy_along_z = pose[0] * minus_gfoot_vy_along_z + t505 * t481;
-        let t508 = pose[1] * minus_rate_foot_along_z;
-        let t511 = minus_rate_foot_along_z * t508 - pose[1] * t497;
-        let t515 = pose[1] * (minus_rate_foot_along_z * t495);
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t502 - gdrive_vy_along_z * t511
-            - (t515 - 0.31 * t478 * t497 + t515);
-        let t521 = 9.81 + rate_dot_drive_along_z;
+        let t466 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t460;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t469 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t470 = t466 + t469;
+        let t473 = pose[1] * minus_rate_foot_along_z;
+        let t474 = c_foot_along_z * minus_rate_left_bar_along_z * t473;
+        let t476 = pose[0] * t470 + t474 + t474;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t479 = pose[1] * t469;
+        let t482 = gdrive_vx_along_z * t474;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t476 + gdrive_vy_along_z * t479
+            - (t482 - 0.31 * t454 * t470 + t482);
+        let t488 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let t534 = c_foot_along_z * t521;
-        let rate_dot_foot_along_z = minus_gfoot_vy_along_z * t511
-            - minus_gfoot_vx_along_z * t502;
-        let t547 = minus_s_foot_along_z * t521;
-        let t551 = c_foot_along_z
-            * (parameters[74] * t534
-                - (parameters[72] * t493 + parameters[73] * rate_dot_foot_along_z))
+        let t501 = c_foot_along_z * t488;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vy_along_z * t479
+            + minus_gfoot_vx_along_z * t476;
+        let t514 = minus_s_foot_along_z * t488;
+        let t518 = c_foot_along_z
+            * (parameters[74] * t501
+                - (parameters[72] * t466 - parameters[73] * minus_rate_dot_foot_along_z))
             + minus_s_foot_along_z
-                * (parameters[72] * rate_dot_foot_along_z - parameters[73] * t493
-                    + parameters[74] * t547);
-        let t553 = c_left_bar_along_z * rate_dot_foot_along_z;
-        let t555 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t556 = t555 * t555;
-        let t557 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t558 = t556 + t557;
-        let t560 = 3.225806451612903 * t508;
-        let t561 = t560 * t555;
-        let rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t511;
-        let t563 = t561 + rate_dot_left_bar_along_z;
-        let t567 = c_left_bar_along_z * t534;
-        let t571 = rate_dot_left_bar_along_z - t561;
-        let t574 = 10.40582726326743 * (t508 * t508);
-        let t575 = t574 + t557;
-        let t578 = minus_s_left_bar_along_z * rate_dot_foot_along_z;
-        let t581 = minus_s_left_bar_along_z * t534;
-        let t585 = t478
-            * (parameters[83] * t553 - (parameters[81] * t558 + parameters[82] * t563)
-                + parameters[84] * t567)
-            + t505
-                * (parameters[81] * t571 - parameters[82] * t575 + parameters[83] * t578
-                    + parameters[84] * t581);
-        let t586 = minus_rate_left_bar_along_z * t555;
-        let t587 = t586 - t578;
-        let t588 = t586 + t587;
-        let t590 = minus_rate_left_bar_along_z * t560;
-        let t591 = t553 + t590;
-        let t592 = t590 + t591;
-        let t601 = parameters[66] * t521 + parameters[67] * rate_dot_drive_along_z
+                * (parameters[74] * t514
+                    - (parameters[72] * minus_rate_dot_foot_along_z
+                        + parameters[73] * t466));
+        let t520 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t522 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t523 = t522 * t522;
+        let t524 = t523 + t469;
+        let t526 = 3.225806451612903 * t473;
+        let t527 = t526 * t522;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t479;
+        let t529 = t527 - minus_rate_dot_left_bar_along_z;
+        let t533 = c_left_bar_along_z * t501;
+        let t537 = minus_rate_dot_left_bar_along_z + t527;
+        let t539 = t446 * t466;
+        let t540 = t539 + t469;
+        let t543 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t546 = minus_s_left_bar_along_z * t501;
+        let t550 = t454
+            * (parameters[84] * t533
+                - (parameters[83] * t520 + parameters[81] * t524
+                    + parameters[82] * t529))
+            + t459
+                * (parameters[84] * t546
+                    - (parameters[81] * t537 + parameters[82] * t540
+                        + parameters[83] * t543));
+        let t551 = minus_rate_left_bar_along_z * t522;
+        let t552 = t551 + t543;
+        let t553 = t551 + t552;
+        let t555 = minus_rate_left_bar_along_z * t526;
+        let t556 = t555 - t520;
+        let t557 = t555 + t556;
+        let t566 = parameters[66] * t488 + parameters[67] * rate_dot_drive_along_z
             + parameters[68] * rate_drive_along_z
             + ::overact::math::signed(parameters[69], rate_drive_along_z)
-            + parameters[70] + t551 + t585
+            + parameters[70] + t518 + t550
             - minus_s_foot_along_z
-                * (parameters[82] * t588 - parameters[81] * t592 - parameters[83] * t493
-                    - parameters[84] * t547);
-        let t618 = t478
-            * (parameters[93] * t553 - (parameters[91] * t558 + parameters[92] * t563)
-                + parameters[94] * t567)
-            + t505
-                * (parameters[91] * t571 - parameters[92] * t575 + parameters[93] * t578
-                    + parameters[94] * t581);
-        let t628 = t601 + t618
+                * (parameters[82] * t553 - parameters[81] * t557 - parameters[83] * t466
+                    - parameters[84] * t514);
+        let t583 = t454
+            * (parameters[94] * t533
+                - (parameters[93] * t520 + parameters[91] * t524
+                    + parameters[92] * t529))
+            + t459
+                * (parameters[94] * t546
+                    - (parameters[91] * t537 + parameters[92] * t540
+                        + parameters[93] * t543));
+        let t593 = t566 + t583
             - minus_s_foot_along_z
-                * (parameters[92] * t588 - parameters[91] * t592 - parameters[93] * t493
-                    - parameters[94] * t547);
-        let t632 = 9.81 * c_foot_along_z;
-        let t634 = parameters[97] * rate_dot_foot_along_z - parameters[96] * t493
-            + parameters[98] * t632;
-        let t639 = 9.81 * minus_s_foot_along_z;
-        let t641 = parameters[96] * rate_dot_foot_along_z + parameters[97] * t493
-            + parameters[98] * t639;
-        let t644 = t628 + c_foot_along_z * t634 + minus_s_foot_along_z * t641;
-        let t654 = t557 - t574;
-        let t662 = parameters[76] * t588 - parameters[75] * t590 + parameters[77] * t654
-            + parameters[78] * t591 + parameters[79] * t563 + parameters[80] * t590;
-        let t675 = t556 - t557;
-        let t679 = parameters[75] * t587 + parameters[76] * t592 + parameters[77] * t571
-            - parameters[78] * t586 + parameters[79] * t675 + parameters[80] * t586;
-        let t685 = c_left_bar_along_z
-            * (t662 + parameters[81] * t547 + parameters[83] * t567)
+                * (parameters[92] * t553 - parameters[91] * t557 - parameters[93] * t466
+                    - parameters[94] * t514);
+        let t597 = 9.81 * c_foot_along_z;
+        let t599 = parameters[98] * t597
+            - (parameters[97] * minus_rate_dot_foot_along_z + parameters[96] * t466);
+        let t604 = 9.81 * minus_s_foot_along_z;
+        let t606 = parameters[97] * t466 - parameters[96] * minus_rate_dot_foot_along_z
+            + parameters[98] * t604;
+        let t609 = t593 + c_foot_along_z * t599 + minus_s_foot_along_z * t606;
+        let t619 = t469 - t539;
+        let t627 = parameters[76] * t553 - parameters[75] * t555 + parameters[77] * t619
+            + parameters[78] * t556 + parameters[79] * t529 + parameters[80] * t555;
+        let t640 = t523 - t469;
+        let t644 = parameters[75] * t552 + parameters[76] * t557 - parameters[77] * t537
+            - parameters[78] * t551 + parameters[79] * t640 + parameters[80] * t551;
+        let t650 = c_left_bar_along_z
+            * (t627 + parameters[81] * t514 + parameters[83] * t533)
             - minus_s_left_bar_along_z
-                * (t679 - parameters[82] * t547 - parameters[83] * t581);
-        let t697 = parameters[86] * t588 - parameters[85] * t590 + parameters[87] * t654
-            + parameters[88] * t591 + parameters[89] * t563 + parameters[90] * t590;
-        let t713 = parameters[85] * t587 + parameters[86] * t592 + parameters[87] * t571
-            - parameters[88] * t586 + parameters[89] * t675 + parameters[90] * t586;
-        let t719 = c_left_bar_along_z
-            * (t697 + parameters[91] * t547 + parameters[93] * t567)
+                * (t644 - parameters[82] * t514 - parameters[83] * t546);
+        let t662 = parameters[86] * t553 - parameters[85] * t555 + parameters[87] * t619
+            + parameters[88] * t556 + parameters[89] * t529 + parameters[90] * t555;
+        let t678 = parameters[85] * t552 + parameters[86] * t557 - parameters[87] * t537
+            - parameters[88] * t551 + parameters[89] * t640 + parameters[90] * t551;
+        let t684 = c_left_bar_along_z
+            * (t662 + parameters[91] * t514 + parameters[93] * t533)
             - minus_s_left_bar_along_z
-                * (t713 - parameters[92] * t547 - parameters[93] * t581);
-        let t728 = parameters[71] * rate_dot_foot_along_z + parameters[72] * t547
-            - parameters[73] * t534 + t685 + t719 + t473 * t641
-            + parameters[95] * rate_dot_foot_along_z + parameters[96] * t639
-            + parameters[97] * t632;
-        let t731 = t168 + gdrive_vx_along_y * t343 - minus_gfoot_vx_along_y * t429
-            - minus_gleft_bar_vx_along_y * t465 + gdrive_vx_along_z * t644
-            - minus_gfoot_vx_along_z * t728;
-        let t739 = minus_rate_left_bar_along_x * t88;
-        let t742 = t19 - t107;
-        let t745 = t83 + t739;
-        let t751 = parameters[10] * t122 - parameters[9] * t739 + parameters[11] * t742
-            + parameters[12] * t745 + parameters[13] * t92 + parameters[14] * t739;
-        let t764 = t89 * t89;
-        let t765 = t764 - t19;
-        let t769 = parameters[9] * t121 - parameters[10] * t118 - parameters[11] * t104
-            - parameters[12] * t120 + parameters[13] * t765 + parameters[14] * t120;
-        let t775 = c_left_bar_along_x * (t751 + 0.31 * t119 + parameters[17] * t97)
+                * (t678 - parameters[92] * t514 - parameters[93] * t546);
+        let t693 = parameters[72] * t514 - parameters[71] * minus_rate_dot_foot_along_z
+            - parameters[73] * t501 + t650 + t684 + t449 * t606 + parameters[96] * t604
+            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t597;
+        let t696 = t157 + gdrive_vx_along_y * t320 - minus_gfoot_vx_along_y * t406
+            - minus_gleft_bar_vx_along_y * t442 + gdrive_vx_along_z * t609
+            - minus_gfoot_vx_along_z * t693;
+        let t704 = minus_rate_left_bar_along_x * t78;
+        let t707 = t15 - t96;
+        let t710 = t704 - t73;
+        let t716 = parameters[10] * t111 - parameters[9] * t704 + parameters[11] * t707
+            + parameters[12] * t710 + parameters[13] * t82 + parameters[14] * t704;
+        let t729 = t79 * t79;
+        let t730 = t729 - t15;
+        let t734 = parameters[9] * t110 - parameters[10] * t107 - parameters[11] * t94
+            - parameters[12] * t109 + parameters[13] * t730 + parameters[14] * t109;
+        let t740 = c_left_bar_along_x * (t716 + 0.31 * t108 + parameters[17] * t87)
             - minus_s_left_bar_along_x
-                * (t769 - parameters[16] * t77 - parameters[17] * t113);
-        let t787 = parameters[20] * t122 - parameters[19] * t739 + parameters[21] * t742
-            + parameters[22] * t745 + parameters[23] * t92 + parameters[24] * t739;
-        let t803 = parameters[19] * t121 - parameters[20] * t118 - parameters[21] * t104
-            - parameters[22] * t120 + parameters[23] * t765 + parameters[24] * t120;
-        let t809 = c_left_bar_along_x * (t787 + 0.31 * t149 + parameters[27] * t97)
+                * (t734 - parameters[16] * t67 - parameters[17] * t102);
+        let t752 = parameters[20] * t111 - parameters[19] * t704 + parameters[21] * t707
+            + parameters[22] * t710 + parameters[23] * t82 + parameters[24] * t704;
+        let t768 = parameters[19] * t110 - parameters[20] * t107 - parameters[21] * t94
+            - parameters[22] * t109 + parameters[23] * t730 + parameters[24] * t109;
+        let t774 = c_left_bar_along_x * (t752 + 0.31 * t138 + parameters[27] * t87)
             - minus_s_left_bar_along_x
-                * (t803 - parameters[26] * t77 - parameters[27] * t113);
-        let t814 = parameters[5] * rate_dot_foot_along_x + parameters[6] * t77
-            - parameters[7] * t64 + t775 + t809 + t4 * t165
-            + parameters[29] * rate_dot_foot_along_x;
-        let t822 = t574 - t556;
-        let t832 = parameters[75] * t561 + parameters[76] * t822 - parameters[77] * t578
-            - parameters[78] * t561 + parameters[79] * t553
-            + parameters[80] * rate_dot_left_bar_along_z;
-        let t847 = parameters[85] * t561 + parameters[86] * t822 - parameters[87] * t578
-            - parameters[88] * t561 + parameters[89] * t553
-            + parameters[90] * rate_dot_left_bar_along_z;
-        let t854 = t832 + parameters[81] * t581 - parameters[82] * t567 + t847
-            + parameters[91] * t581 - parameters[92] * t567 + pose[1] * t634;
-        let t857 = gdrive_vy_along_x * t168 - minus_gfoot_vy_along_x * t814 + t343
-            + gdrive_vy_along_z * t644 - minus_gfoot_vy_along_z * t728
-            - minus_gleft_bar_vy_along_z * t854;
-        let t862 = t107 - t764;
-        let t872 = parameters[9] * t90 + parameters[10] * t862 - parameters[11] * t101
-            - parameters[12] * t90 + parameters[13] * t83
-            + parameters[14] * rate_dot_left_bar_along_x;
-        let t887 = parameters[19] * t90 + parameters[20] * t862 - parameters[21] * t101
-            - parameters[22] * t90 + parameters[23] * t83
-            + parameters[24] * rate_dot_left_bar_along_x;
-        let t897 = t872 + parameters[15] * t113 - parameters[16] * t97 + t887
-            + parameters[25] * t113 - parameters[26] * t97 + pose[2] * t161
-            - 3.0411 * (c_left_bar_along_x * parameters[32]);
-        let t904 = gdrive_vz_along_x * t168 - minus_gfoot_vz_along_x * t814
-            - minus_gleft_bar_vz_along_x * t897 + gdrive_vz_along_y * t343
-            - minus_gfoot_vz_along_y * t429 + t644;
-        Ok([t731, t857, t904 + 9.81 * (parameters[99] + parameters[100])])
+                * (t768 - parameters[26] * t67 - parameters[27] * t102);
+        let t779 = parameters[6] * t67 - parameters[5] * minus_rate_dot_foot_along_x
+            - parameters[7] * t54 + t740 + t774 + t4 * t154
+            - parameters[29] * minus_rate_dot_foot_along_x;
+        let t787 = t539 - t523;
+        let t797 = parameters[75] * t527 + parameters[76] * t787 + parameters[77] * t543
+            - parameters[78] * t527 - parameters[79] * t520
+            - parameters[80] * minus_rate_dot_left_bar_along_z;
+        let t812 = parameters[85] * t527 + parameters[86] * t787 + parameters[87] * t543
+            - parameters[88] * t527 - parameters[89] * t520
+            - parameters[90] * minus_rate_dot_left_bar_along_z;
+        let t819 = t797 + parameters[81] * t546 - parameters[82] * t533 + t812
+            + parameters[91] * t546 - parameters[92] * t533 + pose[1] * t599;
+        let t822 = gdrive_vy_along_x * t157 - minus_gfoot_vy_along_x * t779 + t320
+            + gdrive_vy_along_z * t609 - minus_gfoot_vy_along_z * t693
+            - minus_gleft_bar_vy_along_z * t819;
+        let t827 = t96 - t729;
+        let t837 = parameters[9] * t80 + parameters[10] * t827 + parameters[11] * t91
+            - parameters[12] * t80 - parameters[13] * t73
+            - parameters[14] * minus_rate_dot_left_bar_along_x;
+        let t852 = parameters[19] * t80 + parameters[20] * t827 + parameters[21] * t91
+            - parameters[22] * t80 - parameters[23] * t73
+            - parameters[24] * minus_rate_dot_left_bar_along_x;
+        let t862 = t837 + parameters[15] * t102 - parameters[16] * t87 + t852
+            + parameters[25] * t102 - parameters[26] * t87
+            - (pose[2] * t150 + 3.0411 * (c_left_bar_along_x * parameters[32]));
+        let t869 = gdrive_vz_along_x * t157 - minus_gfoot_vz_along_x * t779
+            - minus_gleft_bar_vz_along_x * t862 + gdrive_vz_along_y * t320
+            - minus_gfoot_vz_along_y * t406 + t609;
+        Ok([t696, t822, t869 + 9.81 * (parameters[99] + parameters[100])])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
@@ -9000,7 +8261,14 @@ impl ::overact::Model for Orthoglide {
                 ::overact::block::map3(300, inputs, output, Self::idm_red_platform)
             }
             ::overact::Function::IdmRedPayload => {
-                ::overact::block::map3(3, inputs, output, Self::idm_red_payload)
+                ::overact::block::map3(
+                    3,
+                    inputs,
+                    output,
+                    |pose, twist, acceleration| Ok(
+                        Self::idm_red_payload(pose, twist, acceleration),
+                    ),
+                )
             }
             ::overact::Function::ProjectPlatform => {
                 ::overact::block::map2(3, inputs, output, Self::project_platform)

@@ -185,72 +185,73 @@ impl Planar3Prr {
     ///
     /// Output: 9.
     ///
-    /// 133 operations (55 additions, 78 multiplications, 0 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 135 intermediates.
+    /// 126 operations (53 additions, 73 multiplications, 0 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 128 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = pose[0] - 0.08 * s_phi;
-        let t4 = t3 * t3;
-        let t7 = pose[1] + 0.08 * c_phi - 0.3;
-        let t12 = 8.650519031141869 * (t4 - (t4 + t7 * t7 - 0.1156));
-        ::overact::guard::reach(t12, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t12);
-        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t7);
-        let c3_leg1 = 2.9411764705882355 * (s_phi * t7) + c_phi * minus_s2_leg1;
-        let t42 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t44 = pose[0] + t42 + 0.25980762113533157;
-        let t48 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t50 = pose[1] - t48 + 0.15;
-        let t52 = 0.5 * t44 - 0.8660254037844386 * t50;
-        let t59 = 8.650519031141869 * (t52 * t52 - (t44 * t44 + t50 * t50 - 0.1156));
-        ::overact::guard::reach(t59, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t59);
-        let t66 = 0.8660254037844386 * t44 + 0.5 * t50;
-        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t2 = 0.08 * s_phi;
+        let t4 = 0.08 * c_phi;
+        let t6 = pose[1] + t4 - 0.3;
+        let t9 = 8.650519031141869 * (0.1156 - t6 * t6);
+        ::overact::guard::reach(t9, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t9);
+        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t6);
+        let c3_leg1 = 2.9411764705882355 * (s_phi * t6) + c_phi * minus_s2_leg1;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let s3_leg2 = 2.9411764705882355 * (t66 * minus_s23_leg2)
+        let t40 = 0.08 * minus_c23_leg2;
+        let t41 = t2 - t40;
+        let t43 = pose[0] + t41 + 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t48 = 0.08 * minus_s23_leg2;
+        let t49 = t4 + t48;
+        let t51 = pose[1] - t49 + 0.15;
+        let t53 = 0.5 * t43 - 0.8660254037844386 * t51;
+        let t60 = 8.650519031141869 * (t53 * t53 - (t43 * t43 + t51 * t51 - 0.1156));
+        ::overact::guard::reach(t60, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t60);
+        let t67 = 0.8660254037844386 * t43 + 0.5 * t51;
+        let s3_leg2 = 2.9411764705882355 * (t67 * minus_s23_leg2)
             - minus_c23_leg2 * minus_s2_leg2;
-        let c3_leg2 = 2.9411764705882355 * (t66 * minus_c23_leg2)
+        let c3_leg2 = 2.9411764705882355 * (t67 * minus_c23_leg2)
             + minus_s23_leg2 * minus_s2_leg2;
-        let t98 = pose[0] + 0.08 * minus_c23_leg2 - 0.25980762113533157;
-        let t102 = pose[1] + 0.08 * minus_s23_leg2 + 0.15;
-        let t104 = 0.5 * t98 + 0.8660254037844386 * t102;
-        let t111 = 8.650519031141869
-            * (t104 * t104 - (t98 * t98 + t102 * t102 - 0.1156));
-        ::overact::guard::reach(t111, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t111);
-        let t118 = 0.8660254037844386 * t98 - 0.5 * t102;
-        let minus_c23_leg3 = 12.5 * t42;
-        let s23_leg3 = 12.5 * t48;
-        let minus_c3_leg3 = 2.9411764705882355 * (t118 * minus_c23_leg3)
+        let t92 = pose[0] + t40 - 0.25980762113533157;
+        let t95 = pose[1] + t48 + 0.15;
+        let t97 = 0.5 * t92 + 0.8660254037844386 * t95;
+        let t104 = 8.650519031141869 * (t97 * t97 - (t92 * t92 + t95 * t95 - 0.1156));
+        ::overact::guard::reach(t104, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t104);
+        let t111 = 0.8660254037844386 * t92 - 0.5 * t95;
+        let minus_c23_leg3 = 12.5 * t41;
+        let s23_leg3 = 12.5 * t49;
+        let minus_c3_leg3 = 2.9411764705882355 * (t111 * minus_c23_leg3)
             + s23_leg3 * minus_s2_leg3;
-        let s3_leg3 = 2.9411764705882355 * (t118 * s23_leg3)
+        let s3_leg3 = 2.9411764705882355 * (t111 * s23_leg3)
             - minus_c23_leg3 * minus_s2_leg3;
         Ok([
-            -(t3 - 0.34 * minus_s2_leg1),
+            -(pose[0] - t2 - 0.34 * minus_s2_leg1),
             ::overact::math::atan2(
-                0.6470588235292607 * minus_s2_leg1 + 2.242470829899291 * t7,
-                0.7624400821657589 * minus_s2_leg1 - 1.9031141868507668 * t7,
+                0.6470588235292607 * minus_s2_leg1 + 2.242470829899291 * t6,
+                0.7624400821657589 * minus_s2_leg1 - 1.9031141868507668 * t6,
             ) + 4.008668472301665,
             ::overact::math::atan2(
                 0.7624400821657629 * s3_leg1 - 0.6470588235292559 * c3_leg1,
                 0.7624400821657629 * c3_leg1 + 0.6470588235292559 * s3_leg1,
             ) - 5.579464799096567,
-            t52 + 0.34 * minus_s2_leg2,
+            t53 + 0.34 * minus_s2_leg2,
             ::overact::math::atan2(
-                0.6470588235292607 * minus_s2_leg2 - 2.242470829899291 * t66,
-                1.9031141868507668 * t66 + 0.7624400821657589 * minus_s2_leg2,
+                0.6470588235292607 * minus_s2_leg2 - 2.242470829899291 * t67,
+                1.9031141868507668 * t67 + 0.7624400821657589 * minus_s2_leg2,
             ) + 4.008668472301665,
             ::overact::math::atan2(
                 0.1791493378363261 * s3_leg2 + 0.9838218917836734 * c3_leg2,
                 0.1791493378363261 * c3_leg2 - 0.9838218917836734 * s3_leg2,
             ) - 7.673859901489763,
-            t104 + 0.34 * minus_s2_leg3,
+            t97 + 0.34 * minus_s2_leg3,
             ::overact::math::atan2(
-                0.6470588235292614 * minus_s2_leg3 + 2.2424708298992893 * t118,
-                0.7624400821657583 * minus_s2_leg3 - 1.9031141868507688 * t118,
+                0.6470588235292614 * minus_s2_leg3 + 2.2424708298992893 * t111,
+                0.7624400821657583 * minus_s2_leg3 - 1.9031141868507688 * t111,
             ) + 4.008668472301664,
             ::overact::math::atan2(
                 0.33676306825441693 * minus_c3_leg3 - 0.9415894200020893 * s3_leg3,
@@ -265,35 +266,37 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 59 operations (29 additions, 30 multiplications, 0 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 61 intermediates.
+    /// 52 operations (27 additions, 25 multiplications, 0 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 54 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = pose[0] - 0.08 * s_phi;
-        let t4 = t3 * t3;
-        let t7 = pose[1] + 0.08 * c_phi - 0.3;
-        let t12 = 8.650519031141869 * (t4 - (t4 + t7 * t7 - 0.1156));
-        ::overact::guard::reach(t12, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t12);
-        let t20 = pose[0] + 0.04 * s_phi - 0.06928203230275509 * c_phi
-            + 0.25980762113533157;
-        let t26 = pose[1] - (0.06928203230275509 * s_phi + 0.04 * c_phi) + 0.15;
-        let t28 = 0.5 * t20 - 0.8660254037844386 * t26;
-        let t35 = 8.650519031141869 * (t28 * t28 - (t20 * t20 + t26 * t26 - 0.1156));
-        ::overact::guard::reach(t35, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t35);
+        let t2 = 0.08 * s_phi;
+        let t4 = 0.08 * c_phi;
+        let t6 = pose[1] + t4 - 0.3;
+        let t9 = 8.650519031141869 * (0.1156 - t6 * t6);
+        ::overact::guard::reach(t9, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t9);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t44 = pose[0] + 0.08 * minus_c23_leg2 - 0.25980762113533157;
+        let t16 = 0.08 * minus_c23_leg2;
+        let t19 = pose[0] + t2 - t16 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t51 = pose[1] + 0.08 * minus_s23_leg2 + 0.15;
-        let t53 = 0.5 * t44 + 0.8660254037844386 * t51;
-        let t60 = 8.650519031141869 * (t53 * t53 - (t44 * t44 + t51 * t51 - 0.1156));
-        ::overact::guard::reach(t60, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t60);
+        let t24 = 0.08 * minus_s23_leg2;
+        let t27 = pose[1] - (t4 + t24) + 0.15;
+        let t29 = 0.5 * t19 - 0.8660254037844386 * t27;
+        let t36 = 8.650519031141869 * (t29 * t29 - (t19 * t19 + t27 * t27 - 0.1156));
+        ::overact::guard::reach(t36, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t36);
+        let t41 = pose[0] + t16 - 0.25980762113533157;
+        let t44 = pose[1] + t24 + 0.15;
+        let t46 = 0.5 * t41 + 0.8660254037844386 * t44;
+        let t53 = 8.650519031141869 * (t46 * t46 - (t41 * t41 + t44 * t44 - 0.1156));
+        ::overact::guard::reach(t53, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t53);
         Ok([
-            -(t3 - 0.34 * minus_s2_leg1), t28 + 0.34 * minus_s2_leg2, t53 + 0.34 * minus_s2_leg3,
+            -(pose[0] - t2 - 0.34 * minus_s2_leg1), t29 + 0.34 * minus_s2_leg2,
+            t46 + 0.34 * minus_s2_leg3,
         ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -303,56 +306,54 @@ impl Planar3Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 87 operations (35 additions, 49 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 84 intermediates.
+    /// 79 operations (32 additions, 44 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 76 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t25, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t25);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t29 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
+        let t2 = 0.08 * s_phi;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t34 = 0.08 * minus_c23_leg2;
-        let t36 = pose[0] + t34 - 0.25980762113533157;
+        let t6 = 0.08 * minus_c23_leg2;
+        let t7 = t2 - t6;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
+        let t11 = 0.08 * c_phi;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t41 = 0.08 * minus_s23_leg2;
-        let t43 = pose[1] + t41 + 0.15;
-        let t45 = 0.8660254037844386 * t36 - 0.5 * t43;
-        let t49 = 0.5 * t36 + 0.8660254037844386 * t43;
-        let t56 = 8.650519031141869 * (t49 * t49 - (t36 * t36 + t43 * t43 - 0.1156));
-        ::overact::guard::reach(t56, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t56);
+        let t15 = 0.08 * minus_s23_leg2;
+        let t16 = t11 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t24 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t31 = 8.650519031141869 * (t24 * t24 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t31, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t31);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t35 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t20 - 0.5 * minus_s2_leg2) * t35;
+        let t38 = pose[0] + t6 - 0.25980762113533157;
+        let t41 = pose[1] + t15 + 0.15;
+        let t43 = 0.8660254037844386 * t38 - 0.5 * t41;
+        let t47 = 0.5 * t38 + 0.8660254037844386 * t41;
+        let t54 = 8.650519031141869 * (t47 * t47 - (t38 * t38 + t41 * t41 - 0.1156));
+        ::overact::guard::reach(t54, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t54);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t60 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (2.5471335405424664 * t45 - 0.5 * minus_s2_leg3) * t60;
-        let t62 = 0.08 * c_phi;
-        let t64 = pose[1] + t62 - 0.3;
-        let t65 = 0.08 * s_phi;
-        let t66 = pose[0] - t65;
-        let t67 = t66 * t66;
-        let t72 = 8.650519031141869 * (t67 - (t67 + t64 * t64 - 0.1156));
-        ::overact::guard::reach(t72, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t72);
+        let t58 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t43 - 0.5 * minus_s2_leg3) * t58;
+        let t61 = pose[1] + t11 - 0.3;
+        let t64 = 8.650519031141869 * (0.1156 - t61 * t61);
+        ::overact::guard::reach(t64, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t64);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
         let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
-        let minus_g1_vy_leg1 = t64 * g2_vy_leg1;
+        let minus_g1_vy_leg1 = t61 * g2_vy_leg1;
         let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
-            + 1.4705882352941178 * t14) * t29;
-        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45)
-            * t60;
-        let g1_wz_leg1 = t65 * minus_g1_vy_leg1 + t62;
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t34 * g1_vy_leg3 + t41 * minus_g1_vx_leg3;
+            + 1.4705882352941178 * t20) * t35;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t43)
+            * t58;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t11;
+        let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t6 * g1_vy_leg3 + t15 * minus_g1_vx_leg3;
         Ok([
             [-1.0, -minus_g1_vy_leg1, g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, -minus_g1_wz_leg2],
@@ -406,94 +407,92 @@ impl Planar3Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 170 operations (69 additions, 95 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 166 intermediates.
+    /// 162 operations (66 additions, 90 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 158 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t25, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t25);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t29 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t36 = 0.08 * minus_c23_leg2;
-        let t38 = pose[0] + t36 - 0.25980762113533157;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t6 = 0.08 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t43 = 0.08 * minus_s23_leg2;
-        let t45 = pose[1] + t43 + 0.15;
-        let t47 = 0.8660254037844386 * t38 - 0.5 * t45;
-        let t51 = 0.5 * t38 + 0.8660254037844386 * t45;
-        let t58 = 8.650519031141869 * (t51 * t51 - (t38 * t38 + t45 * t45 - 0.1156));
-        ::overact::guard::reach(t58, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t58);
+        let t14 = 0.08 * minus_s23_leg2;
+        let t15 = 0.08 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t24 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t31 = 8.650519031141869 * (t24 * t24 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t31, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t31);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t35 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t20 - 0.5 * minus_s2_leg2) * t35;
+        let t40 = pose[0] + t5 - 0.25980762113533157;
+        let t43 = pose[1] + t14 + 0.15;
+        let t45 = 0.8660254037844386 * t40 - 0.5 * t43;
+        let t49 = 0.5 * t40 + 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t40 * t40 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t56);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t62 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (2.5471335405424664 * t47 - 0.5 * minus_s2_leg3) * t62;
-        let t65 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t60 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t45 - 0.5 * minus_s2_leg3) * t60;
+        let t63 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t65, 2.5803571428571423, "actuators")?;
-        let t66 = 1.0 / t65;
-        let t67 = 0.08 * c_phi;
-        let t69 = pose[1] + t67 - 0.3;
-        let t70 = 0.08 * s_phi;
-        let t71 = pose[0] - t70;
-        let t72 = t71 * t71;
-        let t77 = 8.650519031141869 * (t72 - (t72 + t69 * t69 - 0.1156));
-        ::overact::guard::reach(t77, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t77);
+        ::overact::guard::platform(t63, 2.5803571428571423, "actuators")?;
+        let t64 = 1.0 / t63;
+        let t66 = pose[1] + t15 - 0.3;
+        let t69 = 8.650519031141869 * (0.1156 - t66 * t66);
+        ::overact::guard::reach(t69, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t69);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
         let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
-        let minus_g1_vy_leg1 = t69 * g2_vy_leg1;
+        let minus_g1_vy_leg1 = t66 * g2_vy_leg1;
         let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
-            + 1.4705882352941178 * t14) * t29;
-        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t47)
-            * t62;
-        let t92 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + 1.4705882352941178 * t20) * t35;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45)
+            * t60;
+        let t84 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t93 = t92 * t66;
-        let t100 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t92 * t93;
-        ::overact::guard::platform(t100, 2.580357142857142, "actuators")?;
-        let t101 = 1.0 / t100;
-        let t102 = t93 - minus_g1_vy_leg1;
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let g1_wz_leg1 = t70 * minus_g1_vy_leg1 + t67;
-        let g1_wz_leg3 = t36 * g1_vy_leg3 + t43 * minus_g1_vx_leg3;
-        let t120 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t85 = t84 * t64;
+        let t92 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t84 * t85;
+        ::overact::guard::platform(t92, 2.580357142857142, "actuators")?;
+        let t93 = 1.0 / t92;
+        let t94 = t85 - minus_g1_vy_leg1;
+        let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let g1_wz_leg1 = t6 * minus_g1_vy_leg1 + t15;
+        let g1_wz_leg3 = t5 * g1_vy_leg3 + t14 * minus_g1_vx_leg3;
+        let t112 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t121 = t120 * t66;
-        let t123 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t92 * t121;
-        let t124 = t123 * t101;
-        let t133 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t120 * t121 - t123 * t124;
-        ::overact::guard::platform(t133, 0.0192, "actuators")?;
-        let t134 = 1.0 / t133;
-        let t138 = t134 * (g1_wz_leg1 + t121 - t124 * t102);
-        let t140 = t101 * t102 - t124 * t138;
-        let t147 = minus_g1_vx_leg2 * t93 - minus_g1_vy_leg2;
-        let t153 = t134 * (minus_g1_vx_leg2 * t121 - minus_g1_wz_leg2 - t124 * t147);
-        let t155 = t101 * t147 - t124 * t153;
-        let t162 = g1_vy_leg3 + minus_g1_vx_leg3 * t93;
-        let t168 = t134 * (g1_wz_leg3 + minus_g1_vx_leg3 * t121 - t124 * t162);
-        let t170 = t101 * t162 - t124 * t168;
+        let t113 = t112 * t64;
+        let t115 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t84 * t113;
+        let t116 = t115 * t93;
+        let t125 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t112 * t113 - t115 * t116;
+        ::overact::guard::platform(t125, 0.0192, "actuators")?;
+        let t126 = 1.0 / t125;
+        let t130 = t126 * (g1_wz_leg1 + t113 - t116 * t94);
+        let t132 = t93 * t94 - t116 * t130;
+        let t139 = minus_g1_vx_leg2 * t85 - minus_g1_vy_leg2;
+        let t145 = t126 * (minus_g1_vx_leg2 * t113 - minus_g1_wz_leg2 - t116 * t139);
+        let t147 = t93 * t139 - t116 * t145;
+        let t154 = g1_vy_leg3 + minus_g1_vx_leg3 * t85;
+        let t160 = t126 * (g1_wz_leg3 + minus_g1_vx_leg3 * t113 - t116 * t154);
+        let t162 = t93 * t154 - t116 * t160;
         Ok([
             [
-                -(t66 + t93 * t140 + t121 * t138),
-                -(minus_g1_vx_leg2 * t66 + t93 * t155 + t121 * t153),
-                -(minus_g1_vx_leg3 * t66 + t93 * t170 + t121 * t168),
+                -(t64 + t85 * t132 + t113 * t130),
+                -(minus_g1_vx_leg2 * t64 + t85 * t147 + t113 * t145),
+                -(minus_g1_vx_leg3 * t64 + t85 * t162 + t113 * t160),
             ],
-            [t140, t155, t170],
-            [t138, t153, t168],
+            [t132, t147, t162],
+            [t130, t145, t160],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -638,7 +637,7 @@ impl Planar3Prr {
     ///
     /// Output: 9.
     ///
-    /// 113 operations (46 additions, 64 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 109 intermediates.
+    /// 102 operations (44 additions, 55 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 98 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -649,60 +648,58 @@ impl Planar3Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t6 = pose[1] + t2 - 0.3;
-        let t7 = 0.08 * s_phi;
-        let t8 = pose[0] - t7;
-        let t9 = t8 * t8;
-        let t14 = 8.650519031141869 * (t9 - (t9 + t6 * t6 - 0.1156));
-        ::overact::guard::reach(t14, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        let t9 = 8.650519031141869 * (0.1156 - t6 * t6);
+        ::overact::guard::reach(t9, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
         let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
-        let minus_g1_vy_leg1 = t6 * g2_vy_leg1;
-        let t19 = twist[1] - t7 * twist[2];
-        let minus_rate_1_leg1 = twist[0] - t2 * twist[2] + minus_g1_vy_leg1 * t19;
-        let rate_2_leg1 = g2_vy_leg1 * t19;
-        let t26 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t28 = pose[0] + t26 + 0.25980762113533157;
-        let t32 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t34 = pose[1] - t32 + 0.15;
-        let t36 = 0.8660254037844386 * t28 + 0.5 * t34;
-        let t40 = 0.5 * t28 - 0.8660254037844386 * t34;
-        let t47 = 8.650519031141869 * (t40 * t40 - (t28 * t28 + t34 * t34 - 0.1156));
-        ::overact::guard::reach(t47, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t47);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t51 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (2.5471335405424664 * t36 - 0.5 * minus_s2_leg2) * t51;
-        let t54 = twist[0] + t32 * twist[2];
-        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
-            + 1.4705882352941178 * t36) * t51;
-        let t61 = twist[1] + t26 * twist[2];
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t54 + minus_g1_vy_leg2 * t61;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t51;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t51;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t54 + minus_g2_vy_leg2 * t61;
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t73 = 0.08 * minus_c23_leg2;
-        let t75 = pose[0] + t73 - 0.25980762113533157;
+        let t12 = 0.04 * s_phi;
+        let t13 = 0.06928203230275509 * c_phi;
+        let t14 = t12 - t13;
+        let t15 = t14 * twist[2];
+        let t16 = t12 + t13;
+        let t17 = t16 * twist[2];
+        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - (t15 + t17));
+        let minus_rate_1_leg1 = twist[0] - t2 * twist[2] + t6 * rate_2_leg1;
+        let t25 = pose[0] + t14 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t80 = 0.08 * minus_s23_leg2;
-        let t82 = pose[1] + t80 + 0.15;
-        let t84 = 0.5 * t75 + 0.8660254037844386 * t82;
-        let t91 = 8.650519031141869 * (t84 * t84 - (t75 * t75 + t82 * t82 - 0.1156));
-        ::overact::guard::reach(t91, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t91);
+        let t30 = 0.08 * minus_s23_leg2;
+        let t31 = t2 + t30;
+        let t33 = pose[1] - t31 + 0.15;
+        let t35 = 0.8660254037844386 * t25 + 0.5 * t33;
+        let t39 = 0.5 * t25 - 0.8660254037844386 * t33;
+        let t46 = 8.650519031141869 * (t39 * t39 - (t25 * t25 + t33 * t33 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t50 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t35 - 0.5 * minus_s2_leg2) * t50;
+        let t53 = twist[0] + t31 * twist[2];
+        let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
+            + 1.4705882352941178 * t35) * t50;
+        let t59 = twist[1] + t15;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t53 + minus_g1_vy_leg2 * t59;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t50;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t50;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t53 + minus_g2_vy_leg2 * t59;
+        let t69 = pose[0] + t16 - 0.25980762113533157;
+        let t72 = pose[1] + t30 + 0.15;
+        let t74 = 0.5 * t69 + 0.8660254037844386 * t72;
+        let t81 = 8.650519031141869 * (t74 * t74 - (t69 * t69 + t72 * t72 - 0.1156));
+        ::overact::guard::reach(t81, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t81);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t96 = 0.8660254037844386 * t75 - 0.5 * t82;
-        let t99 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t96)
-            * t99;
-        let t102 = twist[1] + t73 * twist[2];
-        let minus_g1_vx_leg3 = (2.5471335405424664 * t96 - 0.5 * minus_s2_leg3) * t99;
-        let t109 = twist[0] - t80 * twist[2];
-        let rate_1_leg3 = g1_vy_leg3 * t102 - minus_g1_vx_leg3 * t109;
-        let g2_vx_leg3 = 2.5471335405424664 * t99;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t99;
-        let rate_2_leg3 = g2_vx_leg3 * t109 - minus_g2_vy_leg3 * t102;
+        let t86 = 0.8660254037844386 * t69 - 0.5 * t72;
+        let t89 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t86)
+            * t89;
+        let t91 = twist[1] + t17;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t86 - 0.5 * minus_s2_leg3) * t89;
+        let t98 = twist[0] - t30 * twist[2];
+        let rate_1_leg3 = g1_vy_leg3 * t91 - minus_g1_vx_leg3 * t98;
+        let g2_vx_leg3 = 2.5471335405424664 * t89;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t89;
+        let rate_2_leg3 = g2_vx_leg3 * t98 - minus_g2_vy_leg3 * t91;
         Ok([
             -minus_rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2,
             -minus_rate_2_leg2, minus_rate_2_leg2 + twist[2], rate_1_leg3, rate_2_leg3,
@@ -718,7 +715,7 @@ impl Planar3Prr {
     ///
     /// Output: 9.
     ///
-    /// 162 operations (65 additions, 94 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 158 intermediates.
+    /// 153 operations (63 additions, 87 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 149 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -732,76 +729,76 @@ impl Planar3Prr {
         let t5 = 0.08 * s_phi;
         let t6 = t5 * twist[2];
         let t10 = pose[1] + t2 - 0.3;
-        let t11 = pose[0] - t5;
-        let t12 = t11 * t11;
-        let t17 = 8.650519031141869 * (t12 - (t12 + t10 * t10 - 0.1156));
-        ::overact::guard::reach(t17, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        let t13 = 8.650519031141869 * (0.1156 - t10 * t10);
+        ::overact::guard::reach(t13, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t13);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t19 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t19;
+        let t15 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t15;
         let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
-        let t26 = acceleration[1] - t5 * acceleration[2] - twist[2] * (t2 * twist[2]);
-        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t6);
-        let t31 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t2 * acceleration[2]
-            + twist[2] * t6 + minus_g1_vy_leg1 * t26 + t31 * (0.34 * t19);
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t26 + t10 * t31);
-        let t41 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t43 = pose[0] + t41 + 0.25980762113533157;
-        let t47 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t49 = pose[1] - t47 + 0.15;
-        let t51 = 0.5 * t43 - 0.8660254037844386 * t49;
-        let t58 = 8.650519031141869 * (t51 * t51 - (t43 * t43 + t49 * t49 - 0.1156));
-        ::overact::guard::reach(t58, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t58);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t60 = 1.0 / minus_s2_leg2;
-        let t63 = 0.8660254037844386 * t43 + 0.5 * t49;
-        let t69 = t41 * twist[2];
-        let t71 = acceleration[0] + t47 * acceleration[2] - twist[2] * t69;
-        let t78 = t47 * twist[2];
-        let t80 = acceleration[1] + t41 * acceleration[2] + twist[2] * t78;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t60;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t60;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (twist[0] + t78)
-            + minus_g2_vy_leg2 * (twist[1] + t69);
-        let t90 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t92 = (2.5471335405424664 * t63 - 0.5 * minus_s2_leg2) * t71
-            + (0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t63) * t80
-            + 0.34 * t90;
-        let minus_rate_dot_1_leg2 = t60 * t92;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t60
-            * (0.8660254037844386 * t71 + 0.5 * t80 + t63 * t90);
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t105 = 0.08 * minus_c23_leg2;
-        let t107 = pose[0] + t105 - 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t112 = 0.08 * minus_s23_leg2;
-        let t114 = pose[1] + t112 + 0.15;
-        let t116 = 0.5 * t107 + 0.8660254037844386 * t114;
-        let t123 = 8.650519031141869
-            * (t116 * t116 - (t107 * t107 + t114 * t114 - 0.1156));
-        ::overact::guard::reach(t123, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t123);
+        let t23 = 0.08 * minus_s23_leg2;
+        let t24 = t2 + t23;
+        let t25 = t24 * twist[2];
+        let t26 = twist[2] * t25;
+        let t27 = t23 * twist[2];
+        let t28 = twist[2] * t27;
+        let t30 = acceleration[1] - t5 * acceleration[2] - (t26 - t28);
+        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t6);
+        let t35 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] - t2 * acceleration[2]
+            + twist[2] * t6 + minus_g1_vy_leg1 * t30 + t35 * (0.34 * t15);
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t30 + t10 * t35);
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t46 = 0.08 * minus_c23_leg2;
+        let t47 = t5 - t46;
+        let t49 = pose[0] + t47 + 0.25980762113533157;
+        let t52 = pose[1] - t24 + 0.15;
+        let t54 = 0.5 * t49 - 0.8660254037844386 * t52;
+        let t61 = 8.650519031141869 * (t54 * t54 - (t49 * t49 + t52 * t52 - 0.1156));
+        ::overact::guard::reach(t61, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t61);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t63 = 1.0 / minus_s2_leg2;
+        let t66 = 0.8660254037844386 * t49 + 0.5 * t52;
+        let t72 = t47 * twist[2];
+        let t74 = acceleration[0] + t24 * acceleration[2] - twist[2] * t72;
+        let t81 = acceleration[1] + t47 * acceleration[2] + t26;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t63;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t63;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (twist[0] + t25)
+            + minus_g2_vy_leg2 * (twist[1] + t72);
+        let t91 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t93 = (2.5471335405424664 * t66 - 0.5 * minus_s2_leg2) * t74
+            + (0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t66) * t81
+            + 0.34 * t91;
+        let minus_rate_dot_1_leg2 = t63 * t93;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t63
+            * (0.8660254037844386 * t74 + 0.5 * t81 + t66 * t91);
+        let t104 = pose[0] + t46 - 0.25980762113533157;
+        let t107 = pose[1] + t23 + 0.15;
+        let t109 = 0.5 * t104 + 0.8660254037844386 * t107;
+        let t116 = 8.650519031141869
+            * (t109 * t109 - (t104 * t104 + t107 * t107 - 0.1156));
+        ::overact::guard::reach(t116, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t116);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t125 = 1.0 / minus_s2_leg3;
-        let t128 = 0.8660254037844386 * t107 - 0.5 * t114;
-        let t134 = t105 * twist[2];
-        let t136 = acceleration[0] - t112 * acceleration[2] - twist[2] * t134;
-        let t143 = t112 * twist[2];
-        let t145 = acceleration[1] + t105 * acceleration[2] - twist[2] * t143;
-        let g2_vx_leg3 = 2.5471335405424664 * t125;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t125;
-        let rate_2_leg3 = g2_vx_leg3 * (twist[0] - t143)
-            - minus_g2_vy_leg3 * (twist[1] + t134);
-        let t155 = rate_2_leg3 * rate_2_leg3;
-        let t157 = (2.5471335405424664 * t128 - 0.5 * minus_s2_leg3) * t136
-            - (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t128) * t145
-            + 0.34 * t155;
-        let minus_rate_dot_1_leg3 = t125 * t157;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t125
-            * (0.5 * t145 - 0.8660254037844386 * t136 - t128 * t155);
+        let t118 = 1.0 / minus_s2_leg3;
+        let t121 = 0.8660254037844386 * t104 - 0.5 * t107;
+        let t127 = t46 * twist[2];
+        let t129 = acceleration[0] - t23 * acceleration[2] - twist[2] * t127;
+        let t136 = acceleration[1] + t46 * acceleration[2] - t28;
+        let g2_vx_leg3 = 2.5471335405424664 * t118;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t118;
+        let rate_2_leg3 = g2_vx_leg3 * (twist[0] - t27)
+            - minus_g2_vy_leg3 * (twist[1] + t127);
+        let t146 = rate_2_leg3 * rate_2_leg3;
+        let t148 = (2.5471335405424664 * t121 - 0.5 * minus_s2_leg3) * t129
+            - (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t121) * t136
+            + 0.34 * t146;
+        let minus_rate_dot_1_leg3 = t118 * t148;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t118
+            * (0.5 * t136 - 0.8660254037844386 * t129 - t121 * t146);
         Ok([
             -minus_rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
@@ -816,7 +813,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 156 operations (63 additions, 87 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 158 intermediates.
+    /// 148 operations (60 additions, 82 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 150 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -825,80 +822,78 @@ impl Planar3Prr {
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t25, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t25);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t29 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t36 = 0.08 * minus_c23_leg2;
-        let t38 = pose[0] + t36 - 0.25980762113533157;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t6 = 0.08 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t43 = 0.08 * minus_s23_leg2;
-        let t45 = pose[1] + t43 + 0.15;
-        let t47 = 0.8660254037844386 * t38 - 0.5 * t45;
-        let t51 = 0.5 * t38 + 0.8660254037844386 * t45;
-        let t58 = 8.650519031141869 * (t51 * t51 - (t38 * t38 + t45 * t45 - 0.1156));
-        ::overact::guard::reach(t58, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t58);
+        let t14 = 0.08 * minus_s23_leg2;
+        let t15 = 0.08 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t24 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t31 = 8.650519031141869 * (t24 * t24 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t31, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t31);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t35 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t20 - 0.5 * minus_s2_leg2) * t35;
+        let t40 = pose[0] + t5 - 0.25980762113533157;
+        let t43 = pose[1] + t14 + 0.15;
+        let t45 = 0.8660254037844386 * t40 - 0.5 * t43;
+        let t49 = 0.5 * t40 + 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t40 * t40 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t56);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t62 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (2.5471335405424664 * t47 - 0.5 * minus_s2_leg3) * t62;
-        let t65 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+        let t60 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t45 - 0.5 * minus_s2_leg3) * t60;
+        let t63 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2];
-        let t69 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t67 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t69, 2.5803571428571423, "actuators")?;
-        let t70 = 1.0 / t69;
-        let t72 = 0.08 * c_phi;
-        let t74 = pose[1] + t72 - 0.3;
-        let t75 = 0.08 * s_phi;
-        let t76 = pose[0] - t75;
-        let t77 = t76 * t76;
-        let t82 = 8.650519031141869 * (t77 - (t77 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t82, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t82);
+        ::overact::guard::platform(t67, 2.5803571428571423, "actuators")?;
+        let t68 = 1.0 / t67;
+        let t71 = pose[1] + t15 - 0.3;
+        let t74 = 8.650519031141869 * (0.1156 - t71 * t71);
+        ::overact::guard::reach(t74, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t74);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
         let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
-        let minus_g1_vy_leg1 = t74 * g2_vy_leg1;
+        let minus_g1_vy_leg1 = t71 * g2_vy_leg1;
         let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
-            + 1.4705882352941178 * t14) * t29;
-        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t47)
-            * t62;
-        let t97 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + 1.4705882352941178 * t20) * t35;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45)
+            * t60;
+        let t89 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t98 = t97 * t70;
-        let t105 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t97 * t98;
-        ::overact::guard::platform(t105, 2.580357142857142, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t113 = g1_vy_leg3 * actuator_velocities[2]
+        let t90 = t89 * t68;
+        let t97 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t89 * t90;
+        ::overact::guard::platform(t97, 2.580357142857142, "actuators")?;
+        let t98 = 1.0 / t97;
+        let t105 = g1_vy_leg3 * actuator_velocities[2]
             - (minus_g1_vy_leg1 * actuator_velocities[0]
-                + minus_g1_vy_leg2 * actuator_velocities[1]) + t65 * t98;
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let g1_wz_leg1 = t75 * minus_g1_vy_leg1 + t72;
-        let g1_wz_leg3 = t36 * g1_vy_leg3 + t43 * minus_g1_vx_leg3;
-        let t131 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t63 * t90;
+        let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let g1_wz_leg1 = t6 * minus_g1_vy_leg1 + t15;
+        let g1_wz_leg3 = t5 * g1_vy_leg3 + t14 * minus_g1_vx_leg3;
+        let t123 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t132 = t131 * t70;
-        let t134 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t97 * t132;
-        let t135 = t134 * t106;
-        let t144 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t131 * t132 - t134 * t135;
-        ::overact::guard::platform(t144, 0.0192, "actuators")?;
-        let t154 = (g1_wz_leg1 * actuator_velocities[0]
+        let t124 = t123 * t68;
+        let t126 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t89 * t124;
+        let t127 = t126 * t98;
+        let t145 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t123 * t124 - t126 * t127;
+        ::overact::guard::platform(t145, 0.0192, "actuators")?;
+        let t146 = (g1_wz_leg1 * actuator_velocities[0]
             - minus_g1_wz_leg2 * actuator_velocities[1]
-            + g1_wz_leg3 * actuator_velocities[2] + t65 * t132 - t135 * t113) / t144;
-        let t156 = t106 * t113 - t135 * t154;
-        Ok([-(t65 * t70 + t98 * t156 + t132 * t154), t156, t154])
+            + g1_wz_leg3 * actuator_velocities[2] + t63 * t124 - t127 * t105) / t145;
+        let t148 = t98 * t105 - t127 * t146;
+        Ok([-(t63 * t68 + t90 * t148 + t124 * t146), t148, t146])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -909,7 +904,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 208 operations (79 additions, 123 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 210 intermediates.
+    /// 199 operations (77 additions, 116 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 201 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -923,103 +918,102 @@ impl Planar3Prr {
         let t3 = t2 * twist[2];
         let t5 = 0.08 * c_phi;
         let t7 = pose[1] + t5 - 0.3;
-        let t8 = pose[0] - t2;
-        let t9 = t8 * t8;
-        let t14 = 8.650519031141869 * (t9 - (t9 + t7 * t7 - 0.1156));
-        ::overact::guard::reach(t14, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        let t10 = 8.650519031141869 * (0.1156 - t7 * t7);
+        ::overact::guard::reach(t10, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t16 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t16;
+        let t12 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t12;
         let minus_g1_vy_leg1 = t7 * g2_vy_leg1;
-        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t3);
-        let minus_rate_dot_1_leg1 = twist[2] * t3
-            - minus_g1_vy_leg1 * (twist[2] * (t5 * twist[2]))
-            + rate_2_leg1 * rate_2_leg1 * (0.34 * t16);
-        let t29 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t32 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t34 = pose[0] + t32 + 0.25980762113533157;
-        let t38 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t40 = pose[1] - t38 + 0.15;
-        let t42 = 0.8660254037844386 * t34 + 0.5 * t40;
-        let t46 = 0.5 * t34 - 0.8660254037844386 * t40;
-        let t53 = 8.650519031141869 * (t46 * t46 - (t34 * t34 + t40 * t40 - 0.1156));
-        ::overact::guard::reach(t53, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t53);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t56 = 2.5471335405424664 * t42 - 0.5 * minus_s2_leg2;
-        let t57 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t56 * t57;
-        let t59 = t32 * twist[2];
-        let t64 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t42;
-        let t65 = t38 * twist[2];
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t57;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t57;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (twist[0] + t65)
-            + minus_g2_vy_leg2 * (twist[1] + t59);
-        let rate_dot_1_leg2 = t57
-            * (t56 * (twist[2] * t59) - t64 * (twist[2] * t65)
-                - 0.34 * (minus_rate_2_leg2 * minus_rate_2_leg2));
-        let t80 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t86 = 0.08 * minus_c23_leg2;
-        let t88 = pose[0] + t86 - 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t93 = 0.08 * minus_s23_leg2;
-        let t95 = pose[1] + t93 + 0.15;
-        let t97 = 0.8660254037844386 * t88 - 0.5 * t95;
-        let t101 = 0.5 * t88 + 0.8660254037844386 * t95;
-        let t108 = 8.650519031141869 * (t101 * t101 - (t88 * t88 + t95 * t95 - 0.1156));
-        ::overact::guard::reach(t108, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t108);
+        let t18 = 0.08 * minus_s23_leg2;
+        let t19 = t5 + t18;
+        let t20 = t19 * twist[2];
+        let t21 = twist[2] * t20;
+        let t22 = t18 * twist[2];
+        let t23 = twist[2] * t22;
+        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t3);
+        let minus_rate_dot_1_leg1 = twist[2] * t3 - minus_g1_vy_leg1 * (t21 - t23)
+            + rate_2_leg1 * rate_2_leg1 * (0.34 * t12);
+        let t33 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t37 = 0.08 * minus_c23_leg2;
+        let t38 = t2 - t37;
+        let t40 = pose[0] + t38 + 0.25980762113533157;
+        let t43 = pose[1] - t19 + 0.15;
+        let t45 = 0.8660254037844386 * t40 + 0.5 * t43;
+        let t49 = 0.5 * t40 - 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t40 * t40 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t56);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t59 = 2.5471335405424664 * t45 - 0.5 * minus_s2_leg2;
+        let t60 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t59 * t60;
+        let t62 = t38 * twist[2];
+        let t67 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t45;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t60;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t60;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (twist[0] + t20)
+            + minus_g2_vy_leg2 * (twist[1] + t62);
+        let rate_dot_1_leg2 = t60
+            * (t59 * (twist[2] * t62) - t67 * t21
+                - 0.34 * (minus_rate_2_leg2 * minus_rate_2_leg2));
+        let t81 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t85 = pose[0] + t37 - 0.25980762113533157;
+        let t88 = pose[1] + t18 + 0.15;
+        let t90 = 0.8660254037844386 * t85 - 0.5 * t88;
+        let t94 = 0.5 * t85 + 0.8660254037844386 * t88;
+        let t101 = 8.650519031141869 * (t94 * t94 - (t85 * t85 + t88 * t88 - 0.1156));
+        ::overact::guard::reach(t101, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t101);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t111 = 2.5471335405424664 * t97 - 0.5 * minus_s2_leg3;
-        let t112 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t111 * t112;
-        let t116 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t97;
-        let t117 = t93 * twist[2];
-        let t120 = t86 * twist[2];
-        let g2_vx_leg3 = 2.5471335405424664 * t112;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t112;
-        let rate_2_leg3 = g2_vx_leg3 * (twist[0] - t117)
-            - minus_g2_vy_leg3 * (twist[1] + t120);
-        let minus_rate_dot_1_leg3 = t112
-            * (t116 * (twist[2] * t117) - t111 * (twist[2] * t120)
+        let t104 = 2.5471335405424664 * t90 - 0.5 * minus_s2_leg3;
+        let t105 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t104 * t105;
+        let t109 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t90;
+        let t111 = t37 * twist[2];
+        let g2_vx_leg3 = 2.5471335405424664 * t105;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t105;
+        let rate_2_leg3 = g2_vx_leg3 * (twist[0] - t22)
+            - minus_g2_vy_leg3 * (twist[1] + t111);
+        let minus_rate_dot_1_leg3 = t105
+            * (t109 * t23 - t104 * (twist[2] * t111)
                 + 0.34 * (rate_2_leg3 * rate_2_leg3));
-        let t135 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t137 = t29 + minus_g1_vx_leg2 * t80 + minus_g1_vx_leg3 * t135;
-        let t141 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t126 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t128 = t33 + minus_g1_vx_leg2 * t81 + minus_g1_vx_leg3 * t126;
+        let t132 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t141, 2.5803571428571423, "actuators")?;
-        let t142 = 1.0 / t141;
-        let minus_g1_vy_leg2 = t64 * t57;
-        let g1_vy_leg3 = t116 * t112;
-        let t149 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t132, 2.5803571428571423, "actuators")?;
+        let t133 = 1.0 / t132;
+        let minus_g1_vy_leg2 = t67 * t60;
+        let g1_vy_leg3 = t109 * t105;
+        let t140 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t150 = t149 * t142;
-        let t157 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+        let t141 = t140 * t133;
+        let t148 = minus_g1_vy_leg1 * minus_g1_vy_leg1
             + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t149 * t150;
-        ::overact::guard::platform(t157, 2.580357142857142, "actuators")?;
-        let t158 = 1.0 / t157;
-        let t165 = g1_vy_leg3 * t135 - (minus_g1_vy_leg1 * t29 + minus_g1_vy_leg2 * t80)
-            + t137 * t150;
-        let minus_g1_wz_leg2 = t32 * minus_g1_vy_leg2 + t38 * minus_g1_vx_leg2;
+            - t140 * t141;
+        ::overact::guard::platform(t148, 2.580357142857142, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t156 = g1_vy_leg3 * t126 - (minus_g1_vy_leg1 * t33 + minus_g1_vy_leg2 * t81)
+            + t128 * t141;
+        let minus_g1_wz_leg2 = t38 * minus_g1_vy_leg2 + t19 * minus_g1_vx_leg2;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t5;
-        let g1_wz_leg3 = t86 * g1_vy_leg3 + t93 * minus_g1_vx_leg3;
-        let t183 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let g1_wz_leg3 = t37 * g1_vy_leg3 + t18 * minus_g1_vx_leg3;
+        let t174 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t184 = t183 * t142;
-        let t186 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t149 * t184;
-        let t187 = t186 * t158;
+        let t175 = t174 * t133;
+        let t177 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t140 * t175;
+        let t178 = t177 * t149;
         let t196 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t183 * t184 - t186 * t187;
+            + g1_wz_leg3 * g1_wz_leg3 - t174 * t175 - t177 * t178;
         ::overact::guard::platform(t196, 0.0192, "actuators")?;
-        let t206 = (g1_wz_leg1 * t29 - minus_g1_wz_leg2 * t80 + g1_wz_leg3 * t135
-            + t137 * t184 - t187 * t165) / t196;
-        let t208 = t158 * t165 - t187 * t206;
-        Ok([-(t137 * t142 + t150 * t208 + t184 * t206), t208, t206])
+        let t197 = (g1_wz_leg1 * t33 - minus_g1_wz_leg2 * t81 + g1_wz_leg3 * t126
+            + t128 * t175 - t178 * t156) / t196;
+        let t199 = t149 * t156 - t178 * t197;
+        Ok([-(t128 * t133 + t141 * t199 + t175 * t197), t199, t197])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1031,7 +1025,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 296 operations (100 additions, 193 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 245 intermediates.
+    /// 256 operations (86 additions, 167 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 205 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1041,201 +1035,194 @@ impl Planar3Prr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.08 * c_phi;
-        let t3 = t2 * acceleration[2];
-        let t5 = 0.08 * s_phi;
-        let t6 = t5 * twist[2];
-        let t7 = twist[2] * t6;
-        let t10 = pose[1] + t2 - 0.3;
-        let t11 = pose[0] - t5;
-        let t12 = t11 * t11;
-        let t17 = 8.650519031141869 * (t12 - (t12 + t10 * t10 - 0.1156));
-        ::overact::guard::reach(t17, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        let t2 = 0.08 * s_phi;
+        let t3 = t2 * twist[2];
+        let t5 = 0.08 * c_phi;
+        let t7 = twist[2] * t3 - t5 * acceleration[2];
+        let t8 = acceleration[0] + t7;
+        let t10 = pose[1] + t5 - 0.3;
+        let t13 = 8.650519031141869 * (0.1156 - t10 * t10);
+        ::overact::guard::reach(t13, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t13);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t19 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t19;
+        let t15 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t15;
         let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
-        let t22 = t5 * acceleration[2];
-        let t24 = t2 * twist[2];
-        let t25 = twist[2] * t24;
-        let t26 = acceleration[1] - t22 - t25;
-        let t27 = minus_g1_vy_leg1 * t26;
-        let t29 = twist[1] - t6;
-        let rate_2_leg1 = g2_vy_leg1 * t29;
-        let t31 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 + t27 + t31 * (0.34 * t19);
-        let t35 = minus_g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
-        let t38 = g1_wz_leg1 * minus_rate_dot_1_leg1;
-        let minus_rate_1_leg1 = twist[0] - t24 + minus_g1_vy_leg1 * t29;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t26 + t10 * t31);
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t19);
-        let c2_leg1 = 2.9411764705882355 * t10;
-        let t57 = minus_s2_leg1 * t31 + c2_leg1 * rate_dot_2_leg1;
-        let t65 = 2.9411764705882355 * t26;
-        let t74 = twist[2] - rate_2_leg1;
-        let t80 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t82 = pose[0] + t80 + 0.25980762113533157;
-        let t86 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t88 = pose[1] - t86 + 0.15;
-        let t90 = 0.8660254037844386 * t82 + 0.5 * t88;
-        let t94 = 0.5 * t82 - 0.8660254037844386 * t88;
-        let t101 = 8.650519031141869 * (t94 * t94 - (t82 * t82 + t88 * t88 - 0.1156));
-        ::overact::guard::reach(t101, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t101);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t104 = 2.5471335405424664 * t90 - 0.5 * minus_s2_leg2;
-        let t105 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t104 * t105;
-        let t109 = t80 * twist[2];
-        let t111 = acceleration[0] + t86 * acceleration[2] - twist[2] * t109;
-        let t115 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t90;
-        let t118 = t86 * twist[2];
-        let t120 = acceleration[1] + t80 * acceleration[2] + twist[2] * t118;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t105;
-        let t124 = twist[0] + t118;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t105;
-        let t127 = twist[1] + t109;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t124 + minus_g2_vy_leg2 * t127;
-        let t130 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t132 = t104 * t111 + t115 * t120 + 0.34 * t130;
-        let minus_rate_dot_1_leg2 = t105 * t132;
-        let t134 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t115 * t105;
-        let t136 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_wz_leg2 = t80 * minus_g1_vy_leg2 + t86 * minus_g1_vx_leg2;
-        let t140 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t124 + minus_g1_vy_leg2 * t127;
-        let t153 = 0.8660254037844386 * t111 + 0.5 * t120;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t105 * (t153 + t90 * t130);
-        let minus_g2_wz_leg2 = t80 * minus_g2_vy_leg2 + t86 * minus_g2_vx_leg2;
-        let minus_c2_leg2 = 2.9411764705882355 * t90;
-        let t166 = minus_s2_leg2 * t130 + minus_c2_leg2 * minus_rate_dot_2_leg2;
-        let t168 = minus_c2_leg2 * minus_rate_dot_1_leg2;
-        let t177 = 2.9411764705882355 * t153;
-        let t190 = minus_rate_2_leg2 + twist[2];
+        let t18 = t5 * twist[2];
+        let t21 = twist[2] * t18 + t2 * acceleration[2];
+        let t22 = acceleration[1] - t21;
+        let t23 = minus_g1_vy_leg1 * t22;
+        let t25 = twist[1] - t3;
+        let rate_2_leg1 = g2_vy_leg1 * t25;
+        let minus_rate_dot_1_leg1 = t8 + t23 + rate_2_leg1 * rate_2_leg1 * (0.34 * t15);
+        let t31 = minus_g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t5;
+        let t34 = g1_wz_leg1 * minus_rate_dot_1_leg1;
+        let minus_rate_1_leg1 = twist[0] - t18 + minus_g1_vy_leg1 * t25;
+        let t43 = 2.9411764705882355 * t22;
+        let t45 = 2.9411764705882355 * (t8 - minus_rate_dot_1_leg1);
+        let t46 = minus_g1_vy_leg1 * t45;
+        let rate_dot_2_leg1 = minus_s2_leg1 * (t43 - t46);
+        let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
+        let t52 = 2.9411764705882355 * t31;
+        let t65 = twist[2] - rate_2_leg1;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t198 = 0.08 * minus_c23_leg2;
-        let t200 = pose[0] + t198 - 0.25980762113533157;
+        let t72 = 0.08 * minus_c23_leg2;
+        let t73 = t2 - t72;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t205 = 0.08 * minus_s23_leg2;
-        let t207 = pose[1] + t205 + 0.15;
-        let t209 = 0.8660254037844386 * t200 - 0.5 * t207;
-        let t213 = 0.5 * t200 + 0.8660254037844386 * t207;
-        let t220 = 8.650519031141869
-            * (t213 * t213 - (t200 * t200 + t207 * t207 - 0.1156));
-        ::overact::guard::reach(t220, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t220);
+        let t80 = 0.08 * minus_s23_leg2;
+        let t81 = t5 + t80;
+        let t82 = pose[1] + 0.15;
+        let t85 = 0.8660254037844386 * (pose[0] + t73 + 0.25980762113533157)
+            + 0.5 * (t82 - t81);
+        let minus_c2_leg2 = 2.9411764705882355 * t85;
+        let t89 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
+        ::overact::guard::reach(t89, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t89);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t92 = 2.5471335405424664 * t85 - 0.5 * minus_s2_leg2;
+        let t93 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t92 * t93;
+        let t97 = t73 * twist[2];
+        let t99 = acceleration[0] + t81 * acceleration[2] - twist[2] * t97;
+        let t103 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t85;
+        let t106 = t81 * twist[2];
+        let t108 = acceleration[1] + t73 * acceleration[2] + twist[2] * t106;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t93;
+        let t112 = twist[0] + t106;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t93;
+        let t115 = twist[1] + t97;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t112 + minus_g2_vy_leg2 * t115;
+        let t118 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t120 = t92 * t99 + t103 * t108 + 0.34 * t118;
+        let minus_rate_dot_1_leg2 = t93 * t120;
+        let t122 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t103 * t93;
+        let t124 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t125 = 2.9411764705882355 * t93;
+        let minus_g2_wz_leg2 = t2 * t125;
+        let minus_g1_wz_leg2 = t85 * minus_g2_wz_leg2 - t5;
+        let t129 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t112 + minus_g1_vy_leg2 * t115;
+        let t141 = 0.8660254037844386 * t99 + 0.5 * t108;
+        let minus_rate_dot_2_leg2 = t125 * (t141 + t85 * t118);
+        let t150 = minus_s2_leg2 * t118 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t152 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t161 = 2.9411764705882355 * t141;
+        let t174 = minus_rate_2_leg2 + twist[2];
+        let t184 = 0.8660254037844386 * (pose[0] + t72 + -0.25980762113533157)
+            - 0.5 * (t80 + t82);
+        let c2_leg3 = 2.9411764705882355 * t184;
+        let t188 = 1.0 - c2_leg3 * c2_leg3;
+        ::overact::guard::reach(t188, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t188);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t223 = 2.5471335405424664 * t209 - 0.5 * minus_s2_leg3;
-        let t224 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t223 * t224;
-        let t228 = t198 * twist[2];
-        let t230 = acceleration[0] - t205 * acceleration[2] - twist[2] * t228;
-        let t234 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t209;
-        let t237 = t205 * twist[2];
-        let t239 = acceleration[1] + t198 * acceleration[2] - twist[2] * t237;
-        let g2_vx_leg3 = 2.5471335405424664 * t224;
-        let t243 = twist[0] - t237;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t224;
-        let t246 = twist[1] + t228;
-        let rate_2_leg3 = g2_vx_leg3 * t243 - minus_g2_vy_leg3 * t246;
-        let t249 = rate_2_leg3 * rate_2_leg3;
-        let t251 = t223 * t230 - t234 * t239 + 0.34 * t249;
-        let minus_rate_dot_1_leg3 = t224 * t251;
-        let t253 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let g1_vy_leg3 = t234 * t224;
-        let t255 = g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t198 * g1_vy_leg3 + t205 * minus_g1_vx_leg3;
-        let t259 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vy_leg3 * t246 - minus_g1_vx_leg3 * t243;
-        let t272 = 0.5 * t239 - 0.8660254037844386 * t230;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t224 * (t272 - t209 * t249);
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t224)
-            + 0.2037706832433973 * (minus_s23_leg2 * t224);
-        let c2_leg3 = 2.9411764705882355 * t209;
-        let t287 = minus_s2_leg3 * t249 - c2_leg3 * minus_rate_dot_2_leg3;
-        let t289 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t298 = 2.9411764705882355 * t272;
-        let t311 = twist[2] - rate_2_leg3;
-        let t317 = 12.5 * (t25 + t22);
-        let t319 = 12.5 * (t3 - t7);
+        let t191 = 2.5471335405424664 * t184 - 0.5 * minus_s2_leg3;
+        let t192 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t191 * t192;
+        let t196 = t72 * twist[2];
+        let t198 = acceleration[0] - t80 * acceleration[2] - twist[2] * t196;
+        let t202 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t184;
+        let t205 = t80 * twist[2];
+        let t207 = acceleration[1] + t72 * acceleration[2] - twist[2] * t205;
+        let g2_vx_leg3 = 2.5471335405424664 * t192;
+        let t211 = twist[0] - t205;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t192;
+        let t214 = twist[1] + t196;
+        let rate_2_leg3 = g2_vx_leg3 * t211 - minus_g2_vy_leg3 * t214;
+        let t217 = rate_2_leg3 * rate_2_leg3;
+        let t219 = t191 * t198 - t202 * t207 + 0.34 * t217;
+        let minus_rate_dot_1_leg3 = t192 * t219;
+        let t221 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let g1_vy_leg3 = t202 * t192;
+        let t223 = g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let t224 = 2.9411764705882355 * t192;
+        let minus_g2_wz_leg3 = t2 * t224;
+        let g1_wz_leg3 = t5 + t184 * minus_g2_wz_leg3;
+        let t228 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vy_leg3 * t214 - minus_g1_vx_leg3 * t211;
+        let t240 = 0.5 * t207 - 0.8660254037844386 * t198;
+        let minus_rate_dot_2_leg3 = t224 * (t240 - t184 * t217);
+        let t249 = minus_s2_leg3 * t217 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t251 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t260 = 2.9411764705882355 * t240;
+        let t273 = twist[2] - rate_2_leg3;
+        let t278 = 12.5 * t21;
+        let t279 = 12.5 * t7;
         Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, minus_rate_1_leg1,
-                ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, -t57, -t65,
-                minus_rate_dot_1_leg1, 0.0, 0.0, t134, t134, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, t45, -t43,
+                minus_rate_dot_1_leg1, 0.0, 0.0, t122, t122, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_vx_leg2 * t166 + minus_g2_vx_leg2 * t168),
-                minus_g1_vx_leg2 * t177 + minus_g2_vx_leg2 * t132, t134,
+                -(minus_g1_vx_leg2 * t150 + minus_g2_vx_leg2 * t152),
+                minus_g1_vx_leg2 * t161 + minus_g2_vx_leg2 * t120, t122,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vx_leg2, t190), t253, t253,
+                ::overact::math::signed(minus_g2_vx_leg2, t174), t221, t221,
                 -(minus_g1_vx_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg3,
                 -(g2_vx_leg3 * minus_rate_dot_2_leg3),
-                -(minus_g1_vx_leg3 * t287 + g2_vx_leg3 * t289),
-                minus_g1_vx_leg3 * t298 - g2_vx_leg3 * t251, t253,
+                -(minus_g1_vx_leg3 * t249 + g2_vx_leg3 * t251),
+                minus_g1_vx_leg3 * t260 - g2_vx_leg3 * t219, t221,
                 ::overact::math::signed(g2_vx_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vx_leg3, t311), 0.0, -t317, -t319, acceleration[0],
+                -::overact::math::signed(g2_vx_leg3, t273), 0.0, -t278, t279, acceleration[0],
             ],
             [
-                t35, t35, minus_g1_vy_leg1 * minus_rate_1_leg1,
+                t31, t31, minus_g1_vy_leg1 * minus_rate_1_leg1,
                 ::overact::math::signed(minus_g1_vy_leg1, minus_rate_1_leg1), -minus_g1_vy_leg1,
-                g2_vy_leg1 * rate_dot_2_leg1, -(minus_g1_vy_leg1 * t57 + 2.9411764705882355 * t35),
-                -(2.9411764705882355 * (t27 + minus_rate_dot_1_leg1)), t35,
+                g2_vy_leg1 * rate_dot_2_leg1, -(t52 - t46),
+                -(2.9411764705882355 * (t23 + minus_rate_dot_1_leg1)), t31,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
-                -::overact::math::signed(g2_vy_leg1, t74), t136, t136,
+                -::overact::math::signed(g2_vy_leg1, t65), t124, t124,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_vy_leg2 * t166 + minus_g2_vy_leg2 * t168),
-                minus_g1_vy_leg2 * t177 + 1.4705882352941178 * minus_rate_dot_1_leg2, t136,
+                -(minus_g1_vy_leg2 * t150 + minus_g2_vy_leg2 * t152),
+                minus_g1_vy_leg2 * t161 + 1.4705882352941178 * minus_rate_dot_1_leg2, t124,
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vy_leg2, t190), -t255, -t255,
+                ::overact::math::signed(minus_g2_vy_leg2, t174), -t223, -t223,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
                 g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg3 * t287 + minus_g2_vy_leg3 * t289,
-                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t298, -t255,
+                g1_vy_leg3 * t249 + minus_g2_vy_leg3 * t251,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t260, -t223,
                 -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg3, t311), 0.0, t319, -t317, acceleration[1],
+                ::overact::math::signed(minus_g2_vy_leg3, t273), 0.0, -t279, -t278, acceleration[1],
             ],
             [
-                -t38, -t38, -(g1_wz_leg1 * minus_rate_1_leg1),
+                -t34, -t34, -(g1_wz_leg1 * minus_rate_1_leg1),
                 -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1), g1_wz_leg1,
-                -(minus_g2_wz_leg1 * rate_dot_2_leg1),
-                g1_wz_leg1 * t57 + minus_g2_wz_leg1 * (c2_leg1 * minus_rate_dot_1_leg1),
-                g1_wz_leg1 * t65
+                -(minus_g2_wz_leg1 * rate_dot_2_leg1), t2 * t52 - g1_wz_leg1 * t45,
+                g1_wz_leg1 * t43
                     + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
-                -t38,
+                -t34,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t74),
-                t140,
-                t140,
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t65),
+                t129,
+                t129,
                 minus_g1_wz_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_wz_leg2, minus_rate_1_leg2),
                 -minus_g1_wz_leg2,
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_wz_leg2 * t166 + minus_g2_wz_leg2 * t168),
-                minus_g1_wz_leg2 * t177 + minus_g2_wz_leg2 * t132,
-                t140,
+                -(minus_g1_wz_leg2 * t150 + minus_g2_wz_leg2 * t152),
+                minus_g1_wz_leg2 * t161 + minus_g2_wz_leg2 * t120,
+                t129,
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t190),
-                -t259,
-                -t259,
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t174),
+                -t228,
+                -t228,
                 g1_wz_leg3 * rate_1_leg3,
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 g1_wz_leg3,
                 minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg3 * t287 + minus_g2_wz_leg3 * t289,
-                minus_g2_wz_leg3 * t251 - g1_wz_leg3 * t298,
-                -t259,
+                g1_wz_leg3 * t249 + minus_g2_wz_leg3 * t251,
+                minus_g2_wz_leg3 * t219 - g1_wz_leg3 * t260,
+                -t228,
                 -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t311),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t273),
                 acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]),
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]),
                 0.0,
             ],
         ])
@@ -1251,7 +1238,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 245 operations (76 additions, 166 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 197 intermediates.
+    /// 232 operations (72 additions, 157 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 184 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1266,160 +1253,161 @@ impl Planar3Prr {
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t2 = 0.08 * c_phi;
-        let t3 = t2 * acceleration[2];
-        let t5 = 0.08 * s_phi;
-        let t6 = t5 * twist[2];
-        let t7 = twist[2] * t6;
+        let t2 = 0.08 * s_phi;
+        let t3 = t2 * twist[2];
+        let t5 = 0.08 * c_phi;
+        let t7 = twist[2] * t3 - t5 * acceleration[2];
+        let t8 = acceleration[0] + t7;
         let t11 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t11;
-        let t13 = t5 * acceleration[2];
-        let t15 = t2 * twist[2];
-        let t16 = twist[2] * t15;
-        let t17 = acceleration[1] - t13 - t16;
+        let t13 = t5 * twist[2];
+        let t16 = twist[2] * t13 + t2 * acceleration[2];
+        let t17 = acceleration[1] - t16;
         let t18 = g1_vy_leg1 * t17;
         let minus_g2_vy_leg1 = 2.9411764705882355 * t11;
-        let t21 = twist[1] - t6;
+        let t21 = twist[1] - t3;
         let minus_rate_2_leg1 = minus_g2_vy_leg1 * t21;
-        let t23 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 - t18 - t23 * (0.34 * t11);
+        let minus_rate_dot_1_leg1 = t8 - t18
+            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 * t11);
         let t27 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let g1_wz_leg1 = t2 - g1_vy_leg1 * t5;
+        let g1_wz_leg1 = t5 - g1_vy_leg1 * t2;
         let t30 = g1_wz_leg1 * minus_rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * t21 - (twist[0] - t15);
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t17 + 0.34 * c2_leg1 * t23);
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t11);
-        let t49 = s2_leg1 * t23 + c2_leg1 * minus_rate_dot_2_leg1;
-        let t57 = 2.9411764705882355 * t17;
-        let t66 = minus_rate_2_leg1 + twist[2];
-        let t74 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t75 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t74 * t75;
-        let t79 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t80 = 0.04 * s_phi;
-        let t81 = 0.06928203230275509 * c_phi;
-        let t82 = t80 - t81;
-        let t85 = 0.06928203230275509 * s_phi;
-        let t86 = 0.04 * c_phi;
-        let t87 = t85 + t86;
-        let t88 = t87 * twist[2];
-        let t90 = acceleration[1] + t82 * acceleration[2] + twist[2] * t88;
-        let t94 = t82 * twist[2];
-        let t96 = acceleration[0] + t87 * acceleration[2] - twist[2] * t94;
-        let g2_vx_leg2 = 2.5471335405424664 * t75;
-        let t100 = twist[0] + t88;
-        let g2_vy_leg2 = 1.4705882352941178 * t75;
-        let t103 = twist[1] + t94;
-        let rate_2_leg2 = g2_vx_leg2 * t100 + g2_vy_leg2 * t103;
-        let t106 = rate_2_leg2 * rate_2_leg2;
-        let t108 = t79 * t90 - t74 * t96 - 0.34 * t106;
-        let minus_rate_dot_1_leg2 = t75 * t108;
-        let t110 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t79 * t75;
-        let t112 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = g1_vx_leg2 * t87 - minus_g1_vy_leg2 * t82;
-        let t116 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * t100 - minus_g1_vy_leg2 * t103;
-        let t131 = 0.8660254037844386 * t96 + 0.5 * t90;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t75
-            * (t106 * (0.34 * c2_leg2) - t131);
-        let g2_wz_leg2 = g2_vy_leg2 * t82 + g2_vx_leg2 * t87;
-        let t142 = s2_leg2 * t106 + c2_leg2 * minus_rate_dot_2_leg2;
-        let t144 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t154 = 2.9411764705882355 * t131;
-        let t166 = twist[2] - rate_2_leg2;
-        let t175 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t176 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t175 * t176;
-        let t178 = t85 - t86;
-        let t181 = t81 + t80;
-        let t182 = t181 * twist[2];
-        let t184 = acceleration[0] - t178 * acceleration[2] - twist[2] * t182;
-        let t188 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t191 = t178 * twist[2];
-        let t193 = acceleration[1] + t181 * acceleration[2] - twist[2] * t191;
-        let g2_vy_leg3 = 1.4705882352941178 * t176;
-        let t197 = twist[1] + t182;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t176;
-        let t200 = twist[0] - t191;
-        let rate_2_leg3 = g2_vy_leg3 * t197 - minus_g2_vx_leg3 * t200;
-        let t203 = rate_2_leg3 * rate_2_leg3;
-        let t205 = t175 * t184 - t188 * t193 + 0.34 * t203;
-        let rate_dot_1_leg3 = t176 * t205;
-        let t207 = g1_vx_leg3 * rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t188 * t176;
-        let t209 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t181 + g1_vx_leg3 * t178;
-        let t213 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * t200 - minus_g1_vy_leg3 * t197;
-        let t226 = 0.5 * t193 - 0.8660254037844386 * t184;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t176
-            * (t226 - t203 * (0.34 * c2_leg3));
-        let g2_wz_leg3 = g2_vy_leg3 * t181 + minus_g2_vx_leg3 * t178;
-        let t239 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t203;
-        let t241 = c2_leg3 * rate_dot_1_leg3;
-        let t251 = 2.9411764705882355 * t226;
-        let t263 = twist[2] - rate_2_leg3;
-        let t269 = 12.5 * (t16 + t13);
-        let t271 = 12.5 * (t3 - t7);
+        let rate_1_leg1 = g1_vy_leg1 * t21 - (twist[0] - t13);
+        let t39 = 2.9411764705882355 * t17;
+        let t41 = 2.9411764705882355 * (t8 - minus_rate_dot_1_leg1);
+        let t42 = g1_vy_leg1 * t41;
+        let minus_rate_dot_2_leg1 = s2_leg1 * (t39 + t42);
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1;
+        let t48 = 2.9411764705882355 * t27;
+        let t61 = minus_rate_2_leg1 + twist[2];
+        let t69 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
+        let t70 = 1.0 / s2_leg2;
+        let g1_vx_leg2 = t69 * t70;
+        let t74 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
+        let t75 = 0.04 * s_phi;
+        let t76 = 0.06928203230275509 * c_phi;
+        let t77 = t75 - t76;
+        let t80 = 0.06928203230275509 * s_phi;
+        let t81 = 0.04 * c_phi;
+        let t82 = t80 + t81;
+        let t83 = t82 * twist[2];
+        let t85 = acceleration[1] + t77 * acceleration[2] + twist[2] * t83;
+        let t89 = t77 * twist[2];
+        let t91 = acceleration[0] + t82 * acceleration[2] - twist[2] * t89;
+        let g2_vx_leg2 = 2.5471335405424664 * t70;
+        let t95 = twist[0] + t83;
+        let g2_vy_leg2 = 1.4705882352941178 * t70;
+        let t98 = twist[1] + t89;
+        let rate_2_leg2 = g2_vx_leg2 * t95 + g2_vy_leg2 * t98;
+        let t101 = rate_2_leg2 * rate_2_leg2;
+        let t102 = 0.34 * t101;
+        let t103 = t74 * t85 - t69 * t91 - t102;
+        let minus_rate_dot_1_leg2 = t70 * t103;
+        let t105 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t74 * t70;
+        let t107 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = g1_vx_leg2 * t82 - minus_g1_vy_leg2 * t77;
+        let t111 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * t95 - minus_g1_vy_leg2 * t98;
+        let t121 = 2.9411764705882355 * t70;
+        let t125 = 0.8660254037844386 * t91 + 0.5 * t85;
+        let minus_rate_dot_2_leg2 = t121 * (c2_leg2 * t102 - t125);
+        let g2_wz_leg2 = t2 * t121;
+        let t134 = s2_leg2 * t101 + c2_leg2 * minus_rate_dot_2_leg2;
+        let t136 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t146 = 2.9411764705882355 * t125;
+        let t158 = twist[2] - rate_2_leg2;
+        let t167 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
+        let t168 = 1.0 / s2_leg3;
+        let g1_vx_leg3 = t167 * t168;
+        let t170 = t80 - t81;
+        let t173 = t76 + t75;
+        let t174 = t173 * twist[2];
+        let t176 = acceleration[0] - t170 * acceleration[2] - twist[2] * t174;
+        let t180 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
+        let t183 = t170 * twist[2];
+        let t185 = acceleration[1] + t173 * acceleration[2] - twist[2] * t183;
+        let g2_vy_leg3 = 1.4705882352941178 * t168;
+        let t189 = twist[1] + t174;
+        let minus_g2_vx_leg3 = 2.5471335405424664 * t168;
+        let t192 = twist[0] - t183;
+        let rate_2_leg3 = g2_vy_leg3 * t189 - minus_g2_vx_leg3 * t192;
+        let t195 = rate_2_leg3 * rate_2_leg3;
+        let t196 = 0.34 * t195;
+        let t197 = t167 * t176 - t180 * t185 + t196;
+        let rate_dot_1_leg3 = t168 * t197;
+        let t199 = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t180 * t168;
+        let t201 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t173 + g1_vx_leg3 * t170;
+        let t205 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * t192 - minus_g1_vy_leg3 * t189;
+        let t215 = 2.9411764705882355 * t168;
+        let t218 = 0.5 * t185 - 0.8660254037844386 * t176;
+        let rate_dot_2_leg3 = t215 * (t218 - c2_leg3 * t196);
+        let g2_wz_leg3 = t2 * t215;
+        let t228 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t195;
+        let t230 = c2_leg3 * rate_dot_1_leg3;
+        let t240 = 2.9411764705882355 * t218;
+        let t252 = twist[2] - rate_2_leg3;
+        let t257 = 12.5 * t16;
+        let t258 = 12.5 * t7;
         Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, -rate_1_leg1,
-                -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t49, -t57, minus_rate_dot_1_leg1,
-                0.0, 0.0, -t110, -t110, g1_vx_leg2 * rate_1_leg2,
+                -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t41, -t39, minus_rate_dot_1_leg1,
+                0.0, 0.0, -t105, -t105, g1_vx_leg2 * rate_1_leg2,
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
-                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(g1_vx_leg2 * t142 + g2_vx_leg2 * t144),
-                g2_vx_leg2 * t108 - g1_vx_leg2 * t154, -t110,
+                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(g1_vx_leg2 * t134 + g2_vx_leg2 * t136),
+                g2_vx_leg2 * t103 - g1_vx_leg2 * t146, -t105,
                 ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vx_leg2, t166), t207, t207, g1_vx_leg3 * rate_1_leg3,
+                -::overact::math::signed(g2_vx_leg2, t158), t199, t199, g1_vx_leg3 * rate_1_leg3,
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t239 - minus_g2_vx_leg3 * t241,
-                minus_g2_vx_leg3 * t205 - g1_vx_leg3 * t251, t207,
+                -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t228 - minus_g2_vx_leg3 * t230,
+                minus_g2_vx_leg3 * t197 - g1_vx_leg3 * t240, t199,
                 -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vx_leg3, t263), 0.0, -t269, -t271, acceleration[0],
+                ::overact::math::signed(minus_g2_vx_leg3, t252), 0.0, -t257, t258, acceleration[0],
             ],
             [
                 -t27, -t27, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                2.9411764705882355 * t27 - g1_vy_leg1 * t49,
+                minus_g2_vy_leg1 * minus_rate_dot_2_leg1, t48 - t42,
                 2.9411764705882355 * (t18 - minus_rate_dot_1_leg1), -t27,
                 ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(minus_g2_vy_leg1, t66), t112, t112,
+                ::overact::math::signed(minus_g2_vy_leg1, t61), t107, t107,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t142 - g2_vy_leg2 * t144,
-                minus_g1_vy_leg2 * t154 + 1.4705882352941178 * minus_rate_dot_1_leg2, t112,
+                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t134 - g2_vy_leg2 * t136,
+                minus_g1_vy_leg2 * t146 + 1.4705882352941178 * minus_rate_dot_1_leg2, t107,
                 ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vy_leg2, t166), -t209, -t209,
+                -::overact::math::signed(g2_vy_leg2, t158), -t201, -t201,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t241 - minus_g1_vy_leg3 * t239,
-                minus_g1_vy_leg3 * t251 - 1.4705882352941178 * rate_dot_1_leg3, -t209,
+                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t230 - minus_g1_vy_leg3 * t228,
+                minus_g1_vy_leg3 * t240 - 1.4705882352941178 * rate_dot_1_leg3, -t201,
                 ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg3, t263), 0.0, t271, -t269, acceleration[1],
+                -::overact::math::signed(g2_vy_leg3, t252), 0.0, -t258, -t257, acceleration[1],
             ],
             [
                 -t30, -t30, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                -(g1_wz_leg1 * t49 + g2_wz_leg1 * (c2_leg1 * minus_rate_dot_1_leg1)),
-                g1_wz_leg1 * t57 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1), -t30,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), -(g1_wz_leg1 * t41 + t2 * t48),
+                g1_wz_leg1 * t39 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1), -t30,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t66), -t116, -t116,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t61), -t111, -t111,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 g1_wz_leg2, -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                -(g1_wz_leg2 * t142 + g2_wz_leg2 * t144), g2_wz_leg2 * t108 - g1_wz_leg2 * t154,
-                -t116, ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t166), -t213, -t213,
+                -(g1_wz_leg2 * t134 + g2_wz_leg2 * t136), g2_wz_leg2 * t103 - g1_wz_leg2 * t146,
+                -t111, ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t158), -t205, -t205,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
-                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t241 - minus_g1_wz_leg3 * t239,
-                minus_g1_wz_leg3 * t251 - g2_wz_leg3 * t205, -t213,
+                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t230 - minus_g1_wz_leg3 * t228,
+                minus_g1_wz_leg3 * t240 - g2_wz_leg3 * t197, -t205,
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t263), acceleration[2],
+                ::overact::math::signed(1.0 - g2_wz_leg3, t252), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ])
     }
@@ -1434,7 +1422,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 388 operations (141 additions, 241 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 336 intermediates.
+    /// 337 operations (124 additions, 207 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 285 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1448,259 +1436,235 @@ impl Planar3Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t4 = pose[1] + t2 - 0.3;
-        let t5 = 0.08 * s_phi;
-        let t6 = pose[0] - t5;
-        let t7 = t6 * t6;
-        let t12 = 8.650519031141869 * (t7 - (t7 + t4 * t4 - 0.1156));
-        ::overact::guard::reach(t12, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        let t7 = 8.650519031141869 * (0.1156 - t4 * t4);
+        ::overact::guard::reach(t7, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t7);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t14 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let t9 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t9;
         let minus_g1_vy_leg1 = t4 * g2_vy_leg1;
-        let t17 = minus_g1_vy_leg1 * actuator_accelerations[0];
-        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
-        let t20 = g1_wz_leg1 * actuator_accelerations[0];
-        let t21 = minus_g1_vy_leg1 * actuator_velocities[0];
-        let t22 = g1_wz_leg1 * actuator_velocities[0];
-        let t29 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t31 = pose[0] + t29 + 0.25980762113533157;
-        let t35 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t37 = pose[1] - t35 + 0.15;
-        let t39 = 0.5 * t31 - 0.8660254037844386 * t37;
-        let t46 = 8.650519031141869 * (t39 * t39 - (t31 * t31 + t37 * t37 - 0.1156));
-        ::overact::guard::reach(t46, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t46);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t51 = 0.8660254037844386 * t31 + 0.5 * t37;
-        let t53 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t51;
-        let t54 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t53 * t54;
+        let t12 = minus_g1_vy_leg1 * actuator_accelerations[0];
+        let t13 = 0.08 * s_phi;
+        let g1_wz_leg1 = t13 * minus_g1_vy_leg1 + t2;
+        let t16 = g1_wz_leg1 * actuator_accelerations[0];
+        let t17 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t18 = g1_wz_leg1 * actuator_velocities[0];
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t61 = 0.08 * minus_c23_leg2;
-        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let t26 = 0.08 * minus_c23_leg2;
+        let t27 = t13 - t26;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t68 = 0.08 * minus_s23_leg2;
-        let t70 = pose[1] + t68 + 0.15;
-        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
-        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
-        ::overact::guard::reach(t79, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        let t34 = 0.08 * minus_s23_leg2;
+        let t35 = t2 + t34;
+        let t36 = pose[1] + 0.15;
+        let t39 = 0.8660254037844386 * (pose[0] + t27 + 0.25980762113533157)
+            + 0.5 * (t36 - t35);
+        let minus_c2_leg2 = 2.9411764705882355 * t39;
+        let t42 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
+        ::overact::guard::reach(t42, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t42);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t39;
+        let t47 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t46 * t47;
+        let t56 = 0.8660254037844386 * (pose[0] + t26 + -0.25980762113533157)
+            - 0.5 * (t34 + t36);
+        let c2_leg3 = 2.9411764705882355 * t56;
+        let t59 = 1.0 - c2_leg3 * c2_leg3;
+        ::overact::guard::reach(t59, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t59);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
-        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
-        let t87 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = t86 * t87;
-        let t93 = 2.5471335405424664 * t51 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t93 * t54;
-        let t99 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t99 * t87;
-        let t102 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        let t63 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t56;
+        let t64 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t63 * t64;
+        let t70 = 2.5471335405424664 * t39 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t70 * t47;
+        let t76 = 2.5471335405424664 * t56 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t76 * t64;
+        let t79 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t106 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t83 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t106, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t106, 2.5803571428571423, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t108 = t102 * t107;
-        let t110 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t102 * t108;
-        ::overact::guard::platform(t110, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t110, 2.580357142857142, "actuators")?;
-        let t111 = 1.0 / t110;
-        let minus_g1_wz_leg2 = t29 * minus_g1_vy_leg2 + t35 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
-        let t126 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        ::overact::guard::platform(t83, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t83, 2.5803571428571423, "actuators")?;
+        let t84 = 1.0 / t83;
+        let t85 = t79 * t84;
+        let t87 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t79 * t85;
+        ::overact::guard::platform(t87, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t87, 2.580357142857142, "actuators")?;
+        let t88 = 1.0 / t87;
+        let t90 = 2.9411764705882355 * t47;
+        let minus_g2_wz_leg2 = t13 * t90;
+        let minus_g1_wz_leg2 = t39 * minus_g2_wz_leg2 - t2;
+        let t96 = 2.9411764705882355 * t64;
+        let minus_g2_wz_leg3 = t13 * t96;
+        let g1_wz_leg3 = t2 + t56 * minus_g2_wz_leg3;
+        let t105 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t127 = t126 * t107;
-        let t136 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t102 * t127;
-        let t137 = t136 * t111;
-        let t139 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t126 * t127 - t136 * t137;
-        ::overact::guard::platform(t139, 0.0192, "actuators")?;
-        ::overact::guard::platform(t139, 0.0192, "actuators")?;
-        let t140 = 1.0 / t139;
-        let t141 = minus_g1_wz_leg2 * actuator_velocities[1];
-        let t143 = g1_wz_leg3 * actuator_velocities[2];
-        let t145 = minus_g1_vx_leg2 * actuator_velocities[1];
-        let t147 = minus_g1_vx_leg3 * actuator_velocities[2];
-        let t148 = actuator_velocities[0] + t145 + t147;
-        let t151 = g1_vy_leg3 * actuator_velocities[2];
-        let t152 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t156 = t151 - (t21 + t152) + t148 * t108;
-        let rate_3_leg1 = t140 * (t22 - t141 + t143 + t148 * t127 - t137 * t156);
-        let t160 = t68 * rate_3_leg1;
-        let t161 = rate_3_leg1 * t160;
-        let t163 = t61 * rate_3_leg1;
-        let t164 = rate_3_leg1 * t163;
-        let g2_vx_leg3 = 2.5471335405424664 * t87;
-        let t171 = t111 * t156 - t137 * rate_3_leg1;
-        let t175 = t148 * t107 + t108 * t171 + t127 * rate_3_leg1;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t175 + t160)
-            + minus_g2_vy_leg3 * (t171 + t163);
-        let t182 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t183 = 0.34 * t182;
-        let minus_rate_dot_1_leg3 = t87 * (t86 * t161 - t99 * t164 + t183);
-        let t186 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t188 = t5 * rate_3_leg1;
-        let t189 = rate_3_leg1 * t188;
-        let t191 = rate_3_leg1 * (t2 * rate_3_leg1);
-        let rate_2_leg1 = g2_vy_leg1 * (t171 - t188);
-        let t196 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t189 - minus_g1_vy_leg1 * t191 + t196 * (0.34 * t14);
-        let t200 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t202 = t29 * rate_3_leg1;
-        let t203 = rate_3_leg1 * t202;
-        let t205 = t35 * rate_3_leg1;
-        let t206 = rate_3_leg1 * t205;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t54;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t54;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t205 - t175)
-            + minus_g2_vy_leg2 * (t171 + t202);
-        let t216 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t217 = 0.34 * t216;
-        let rate_dot_1_leg2 = t54 * (t93 * t203 - t53 * t206 - t217);
-        let t220 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t227 = t200 + minus_g1_vx_leg2 * t220 + minus_g1_vx_leg3 * t186;
-        let t229 = g1_vy_leg3 * t186
-            - (minus_g1_vy_leg1 * t200 + minus_g1_vy_leg2 * t220) + t108 * t227;
-        let rate_dot_3_leg1 = t140
-            * (g1_wz_leg1 * t200 - minus_g1_wz_leg2 * t220 + g1_wz_leg3 * t186
-                + t127 * t227 - t137 * t229);
-        let t242 = t111 * t229 - t137 * rate_dot_3_leg1;
-        let t243 = t5 * rate_dot_3_leg1;
-        let t245 = t242 - t243 - t191;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t245 + t4 * t196);
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
-        let c2_leg1 = 2.9411764705882355 * t4;
-        let t256 = minus_s2_leg1 * t196 + c2_leg1 * rate_dot_2_leg1;
-        let t264 = 2.9411764705882355 * t245;
-        let t274 = rate_3_leg1 - rate_2_leg1;
-        let t278 = minus_g1_vx_leg2 * actuator_accelerations[1];
-        let t279 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t280 = minus_g1_wz_leg2 * actuator_accelerations[1];
-        let t290 = t107 * t227 + t108 * t242 + t127 * rate_dot_3_leg1;
-        let t292 = t35 * rate_dot_3_leg1 - t290 - t203;
-        let t296 = t242 + t29 * rate_dot_3_leg1 + t206;
-        let t298 = 0.8660254037844386 * t292 + 0.5 * t296;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t54 * (t298 + t51 * t216);
-        let minus_g2_wz_leg2 = t29 * minus_g2_vy_leg2 + t35 * minus_g2_vx_leg2;
-        let minus_c2_leg2 = 2.9411764705882355 * t51;
-        let t309 = minus_c2_leg2 * actuator_accelerations[1];
-        let t313 = minus_s2_leg2 * t216 + minus_c2_leg2 * minus_rate_dot_2_leg2;
-        let t322 = 2.9411764705882355 * t298;
-        let t327 = t93 * t292 + t53 * t296 + t217;
-        let t339 = minus_rate_2_leg2 + rate_3_leg1;
-        let t344 = minus_g1_vx_leg3 * actuator_accelerations[2];
-        let t345 = g1_vy_leg3 * actuator_accelerations[2];
-        let t346 = g1_wz_leg3 * actuator_accelerations[2];
-        let t353 = t290 + t68 * rate_dot_3_leg1 + t164;
-        let t357 = t242 + t61 * rate_dot_3_leg1 - t161;
-        let t359 = 0.8660254037844386 * t353 + 0.5 * t357;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87 * (t359 - t84 * t182);
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
-            + 0.2037706832433973 * (minus_s23_leg2 * t87);
-        let c2_leg3 = 2.9411764705882355 * t84;
-        let t372 = c2_leg3 * actuator_accelerations[2];
-        let t376 = minus_s2_leg3 * t182 - c2_leg3 * minus_rate_dot_2_leg3;
-        let t385 = 2.9411764705882355 * t359;
-        let t390 = t183 - (t99 * t353 + t86 * t357);
-        let t402 = minus_rate_2_leg3 + rate_3_leg1;
-        let t408 = 12.5 * (t191 + t243);
-        let t411 = 12.5 * (t2 * rate_dot_3_leg1 - t189);
+        let t106 = t105 * t84;
+        let t115 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t79 * t106;
+        let t116 = t115 * t88;
+        let t118 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t105 * t106 - t115 * t116;
+        ::overact::guard::platform(t118, 0.0192, "actuators")?;
+        ::overact::guard::platform(t118, 0.0192, "actuators")?;
+        let t119 = 1.0 / t118;
+        let t120 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t122 = g1_wz_leg3 * actuator_velocities[2];
+        let t124 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t126 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t127 = actuator_velocities[0] + t124 + t126;
+        let t130 = g1_vy_leg3 * actuator_velocities[2];
+        let t131 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t135 = t130 - (t17 + t131) + t127 * t85;
+        let rate_3_leg1 = t119 * (t18 - t120 + t122 + t127 * t106 - t116 * t135);
+        let t139 = t34 * rate_3_leg1;
+        let t140 = rate_3_leg1 * t139;
+        let t142 = t26 * rate_3_leg1;
+        let t143 = rate_3_leg1 * t142;
+        let g2_vx_leg3 = 2.5471335405424664 * t64;
+        let t150 = t88 * t135 - t116 * rate_3_leg1;
+        let t154 = t127 * t84 + t85 * t150 + t106 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t64;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t154 + t139)
+            + minus_g2_vy_leg3 * (t150 + t142);
+        let t161 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t64 * (t63 * t140 - t76 * t143 + 0.34 * t161);
+        let t165 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t167 = t13 * rate_3_leg1;
+        let t168 = rate_3_leg1 * t167;
+        let t169 = t35 * rate_3_leg1;
+        let t170 = rate_3_leg1 * t169;
+        let t171 = t170 - t140;
+        let rate_2_leg1 = g2_vy_leg1 * (t150 - t167);
+        let t178 = rate_2_leg1 * rate_2_leg1 * (0.34 * t9);
+        let minus_rate_dot_1_leg1 = t168 - minus_g1_vy_leg1 * t171 + t178;
+        let t180 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t182 = t27 * rate_3_leg1;
+        let t183 = rate_3_leg1 * t182;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t169 - t154)
+            + minus_g2_vy_leg2 * (t150 + t182);
+        let t194 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t47 * (t70 * t183 - t46 * t170 - 0.34 * t194);
+        let t198 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t205 = t180 + minus_g1_vx_leg2 * t198 + minus_g1_vx_leg3 * t165;
+        let t207 = g1_vy_leg3 * t165
+            - (minus_g1_vy_leg1 * t180 + minus_g1_vy_leg2 * t198) + t85 * t205;
+        let rate_dot_3_leg1 = t119
+            * (g1_wz_leg1 * t180 - minus_g1_wz_leg2 * t198 + g1_wz_leg3 * t165
+                + t106 * t205 - t116 * t207);
+        let t220 = t88 * t207 - t116 * rate_dot_3_leg1;
+        let t222 = t171 + t13 * rate_dot_3_leg1;
+        let t223 = t220 - t222;
+        let t224 = 2.9411764705882355 * t223;
+        let t225 = minus_g1_vy_leg1 * t223;
+        let t226 = t178 + t225;
+        let t227 = 2.9411764705882355 * t226;
+        let t228 = minus_g1_vy_leg1 * t227;
+        let rate_dot_2_leg1 = minus_s2_leg1 * (t224 + t228);
+        let minus_g2_wz_leg1 = t13 * g2_vy_leg1;
+        let t234 = 2.9411764705882355 * t12;
+        let t247 = rate_3_leg1 - rate_2_leg1;
+        let t251 = minus_g1_vx_leg2 * actuator_accelerations[1];
+        let t252 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t253 = minus_g1_wz_leg2 * actuator_accelerations[1];
+        let t259 = t168 - t2 * rate_dot_3_leg1;
+        let t261 = t226 + actuator_accelerations[0] + t259;
+        let t268 = 0.5 * (t220 + t27 * rate_dot_3_leg1 + t170);
+        let t269 = 0.8660254037844386 * (t35 * rate_dot_3_leg1 - t261 - t183) + t268;
+        let minus_rate_dot_2_leg2 = t90 * (t269 + t39 * t194);
+        let t276 = minus_c2_leg2 * actuator_accelerations[1];
+        let t280 = minus_s2_leg2 * t194 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t289 = 2.9411764705882355 * t269;
+        let t291 = minus_s2_leg2 * actuator_accelerations[1];
+        let t303 = minus_rate_2_leg2 + rate_3_leg1;
+        let t308 = minus_g1_vx_leg3 * actuator_accelerations[2];
+        let t309 = g1_vy_leg3 * actuator_accelerations[2];
+        let t310 = g1_wz_leg3 * actuator_accelerations[2];
+        let t320 = 0.8660254037844386 * (t261 + t34 * rate_dot_3_leg1 + t143) + t268
+            - 0.8660254037844386 * t259;
+        let minus_rate_dot_2_leg3 = t96 * (t320 - t56 * t161);
+        let t327 = c2_leg3 * actuator_accelerations[2];
+        let t331 = minus_s2_leg3 * t161 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t340 = 2.9411764705882355 * t320;
+        let t342 = minus_s2_leg3 * actuator_accelerations[2];
+        let t354 = minus_rate_2_leg3 + rate_3_leg1;
+        let t359 = 12.5 * t222;
+        let t360 = 12.5 * t259;
         Ok([
             [
                 -actuator_accelerations[0], -actuator_accelerations[0], -actuator_velocities[0],
-                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t256, -t264,
-                -actuator_accelerations[0], 0.0, 0.0, -t278, -t278, -t145,
+                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t227, -t224,
+                -actuator_accelerations[0], 0.0, 0.0, -t251, -t251, -t124,
                 -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
                 -minus_g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_vx_leg2 * t309 - minus_g1_vx_leg2 * t313,
-                minus_g1_vx_leg2 * t322 + minus_g2_vx_leg2 * t327, -t278,
+                minus_g2_vx_leg2 * t276 - minus_g1_vx_leg2 * t280,
+                minus_g1_vx_leg2 * t289 - minus_g2_vx_leg2 * t291, -t251,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vx_leg2, t339), -t344, -t344, -t147,
+                ::overact::math::signed(minus_g2_vx_leg2, t303), -t308, -t308, -t126,
                 -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]),
                 -minus_g1_vx_leg3, -(g2_vx_leg3 * minus_rate_dot_2_leg3),
-                g2_vx_leg3 * t372 - minus_g1_vx_leg3 * t376,
-                minus_g1_vx_leg3 * t385 - g2_vx_leg3 * t390, -t344,
+                g2_vx_leg3 * t327 - minus_g1_vx_leg3 * t331,
+                minus_g1_vx_leg3 * t340 + g2_vx_leg3 * t342, -t308,
                 -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3),
-                -::overact::math::signed(g2_vx_leg3, t402), 0.0, -t408, -t411, -t290,
+                -::overact::math::signed(g2_vx_leg3, t354), 0.0, -t359, t360, -t261,
             ],
             [
-                -t17, -t17, -t21,
+                -t12, -t12, -t17,
                 -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
-                -minus_g1_vy_leg1, g2_vy_leg1 * rate_dot_2_leg1,
-                2.9411764705882355 * t17 - minus_g1_vy_leg1 * t256,
-                2.9411764705882355
-                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t245),
-                -t17,
+                -minus_g1_vy_leg1, g2_vy_leg1 * rate_dot_2_leg1, t234 - t228,
+                2.9411764705882355 * (actuator_accelerations[0] - t225), -t12,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
-                -::overact::math::signed(g2_vy_leg1, t274),
-                -t279,
-                -t279,
-                -t152,
+                -::overact::math::signed(g2_vy_leg1, t247), -t252, -t252, -t131,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
-                -minus_g1_vy_leg2,
-                minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_vy_leg2 * t309 - minus_g1_vy_leg2 * t313,
-                minus_g1_vy_leg2 * t322 - 1.4705882352941178 * actuator_accelerations[1],
-                -t279,
+                -minus_g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
+                minus_g2_vy_leg2 * t276 - minus_g1_vy_leg2 * t280,
+                minus_g1_vy_leg2 * t289 - 1.4705882352941178 * actuator_accelerations[1], -t252,
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vy_leg2, t339),
-                t345,
-                t345,
-                t151,
-                ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]),
-                g1_vy_leg3,
+                ::overact::math::signed(minus_g2_vy_leg2, t303), t309, t309, t130,
+                ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), g1_vy_leg3,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg3 * t376 - minus_g2_vy_leg3 * t372,
-                -(g1_vy_leg3 * t385 + 1.4705882352941178 * actuator_accelerations[2]),
-                t345,
+                g1_vy_leg3 * t331 - minus_g2_vy_leg3 * t327,
+                -(g1_vy_leg3 * t340 + 1.4705882352941178 * actuator_accelerations[2]), t309,
                 ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg3, t402),
-                0.0,
-                t411,
-                -t408,
-                t242,
+                ::overact::math::signed(minus_g2_vy_leg3, t354), 0.0, -t360, -t359, t220,
             ],
             [
-                t20, t20, t22, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
-                g1_wz_leg1, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
-                g1_wz_leg1 * t256
-                    - minus_g2_wz_leg1 * (c2_leg1 * actuator_accelerations[0]),
-                g1_wz_leg1 * t264
+                t16, t16, t18, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
+                g1_wz_leg1, -(minus_g2_wz_leg1 * rate_dot_2_leg1), g1_wz_leg1 * t227 - t13 * t234,
+                g1_wz_leg1 * t224
                     - minus_g2_wz_leg1 * (minus_s2_leg1 * actuator_accelerations[0]),
-                t20,
+                t16,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t274),
-                -t280,
-                -t280,
-                -t141,
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t247),
+                -t253,
+                -t253,
+                -t120,
                 -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
                 -minus_g1_wz_leg2,
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_wz_leg2 * t309 - minus_g1_wz_leg2 * t313,
-                minus_g1_wz_leg2 * t322 + minus_g2_wz_leg2 * t327,
-                -t280,
+                minus_g2_wz_leg2 * t276 - minus_g1_wz_leg2 * t280,
+                minus_g1_wz_leg2 * t289 - minus_g2_wz_leg2 * t291,
+                -t253,
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t339),
-                t346,
-                t346,
-                t143,
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t303),
+                t310,
+                t310,
+                t122,
                 ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]),
                 g1_wz_leg3,
                 minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg3 * t376 - minus_g2_wz_leg3 * t372,
-                minus_g2_wz_leg3 * t390 - g1_wz_leg3 * t385,
-                t346,
+                g1_wz_leg3 * t331 - minus_g2_wz_leg3 * t327,
+                -(minus_g2_wz_leg3 * t342 + g1_wz_leg3 * t340),
+                t310,
                 ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t402),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t354),
                 rate_dot_3_leg1,
-                s_phi * t290 + c_phi * t242,
-                -(s_phi * t242 - c_phi * t290),
+                c_phi * t220 + s_phi * t261,
+                c_phi * t261 - s_phi * t220,
                 0.0,
             ],
         ])
@@ -1715,7 +1679,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 383 operations (137 additions, 242 multiplications, 4 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 343 intermediates.
+    /// 366 operations (130 additions, 232 multiplications, 4 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 326 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1725,208 +1689,205 @@ impl Planar3Prr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = 0.08 * c_phi;
-        let t3 = t2 * acceleration[2];
-        let t5 = 0.08 * s_phi;
-        let t6 = t5 * twist[2];
-        let t7 = twist[2] * t6;
-        let t10 = pose[1] + t2 - 0.3;
-        let t11 = pose[0] - t5;
-        let t12 = t11 * t11;
-        let t17 = 8.650519031141869 * (t12 - (t12 + t10 * t10 - 0.1156));
-        ::overact::guard::reach(t17, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        let t2 = 0.08 * s_phi;
+        let t3 = t2 * twist[2];
+        let t5 = 0.08 * c_phi;
+        let t7 = twist[2] * t3 - t5 * acceleration[2];
+        let t10 = pose[1] + t5 - 0.3;
+        let t13 = 8.650519031141869 * (0.1156 - t10 * t10);
+        ::overact::guard::reach(t13, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t13);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t19 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t19;
+        let t15 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t15;
         let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
-        let t22 = t5 * acceleration[2];
-        let t24 = t2 * twist[2];
-        let t25 = twist[2] * t24;
-        let t26 = acceleration[1] - t22 - t25;
-        let t29 = twist[1] - t6;
-        let rate_2_leg1 = g2_vy_leg1 * t29;
-        let t31 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 + minus_g1_vy_leg1 * t26
-            + t31 * (0.34 * t19);
-        let minus_rate_1_leg1 = twist[0] - t24 + minus_g1_vy_leg1 * t29;
-        let t41 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t43 = pose[0] + t41 + 0.25980762113533157;
-        let t47 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t18 = t5 * twist[2];
+        let t21 = twist[2] * t18 + t2 * acceleration[2];
+        let t22 = acceleration[1] - t21;
+        let t25 = twist[1] - t3;
+        let rate_2_leg1 = g2_vy_leg1 * t25;
+        let t27 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] + t7 + minus_g1_vy_leg1 * t22
+            + t27 * (0.34 * t15);
+        let minus_rate_1_leg1 = twist[0] - t18 + minus_g1_vy_leg1 * t25;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t38 = 0.08 * minus_c23_leg2;
+        let t39 = t2 - t38;
+        let t41 = pose[0] + t39 + 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t46 = 0.08 * minus_s23_leg2;
+        let t47 = t5 + t46;
         let t49 = pose[1] - t47 + 0.15;
-        let t51 = 0.5 * t43 - 0.8660254037844386 * t49;
-        let t58 = 8.650519031141869 * (t51 * t51 - (t43 * t43 + t49 * t49 - 0.1156));
+        let t51 = 0.5 * t41 - 0.8660254037844386 * t49;
+        let t58 = 8.650519031141869 * (t51 * t51 - (t41 * t41 + t49 * t49 - 0.1156));
         ::overact::guard::reach(t58, "leg2")?;
         let minus_s2_leg2 = ::overact::math::sqrt(t58);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t63 = 0.8660254037844386 * t43 + 0.5 * t49;
+        let t63 = 0.8660254037844386 * t41 + 0.5 * t49;
         let t65 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t63;
         let t66 = 1.0 / minus_s2_leg2;
         let minus_g1_vy_leg2 = t65 * t66;
         let t71 = 2.5471335405424664 * t63 - 0.5 * minus_s2_leg2;
         let minus_g1_vx_leg2 = t71 * t66;
-        let minus_g1_wz_leg2 = t41 * minus_g1_vy_leg2 + t47 * minus_g1_vx_leg2;
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t78 = 0.08 * minus_c23_leg2;
-        let t80 = pose[0] + t78 - 0.25980762113533157;
-        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t85 = 0.08 * minus_s23_leg2;
-        let t87 = pose[1] + t85 + 0.15;
-        let t89 = 0.8660254037844386 * t80 - 0.5 * t87;
-        let t93 = 0.5 * t80 + 0.8660254037844386 * t87;
-        let t100 = 8.650519031141869 * (t93 * t93 - (t80 * t80 + t87 * t87 - 0.1156));
-        ::overact::guard::reach(t100, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t100);
+        let minus_g1_wz_leg2 = t39 * minus_g1_vy_leg2 + t47 * minus_g1_vx_leg2;
+        let t76 = pose[0] + t38 - 0.25980762113533157;
+        let t79 = pose[1] + t46 + 0.15;
+        let t81 = 0.8660254037844386 * t76 - 0.5 * t79;
+        let t85 = 0.5 * t76 + 0.8660254037844386 * t79;
+        let t92 = 8.650519031141869 * (t85 * t85 - (t76 * t76 + t79 * t79 - 0.1156));
+        ::overact::guard::reach(t92, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t92);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t103 = 2.5471335405424664 * t89 - 0.5 * minus_s2_leg3;
-        let t104 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t103 * t104;
-        let t109 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t89;
-        let g1_vy_leg3 = t109 * t104;
-        let g1_wz_leg3 = t78 * g1_vy_leg3 + t85 * minus_g1_vx_leg3;
-        let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
-        let t120 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
-        let t123 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
-        let t127 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
-        let t129 = minus_g1_vx_leg3 * t120 + g1_vy_leg3 * t123 + g1_wz_leg3 * t127;
-        ::overact::guard::platform(t129, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t129, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t129, 0.35754477384814676, "kept actuators")?;
-        let t130 = 1.0 / t129;
-        let t131 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
-            * t130;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t19);
-        let t138 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
-            * t130;
-        let t140 = g2_vy_leg1 * t131 + minus_g2_wz_leg1 * t138;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t26 + t10 * t31);
-        let t147 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t130;
-        let t151 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t130;
-        let t153 = g2_vy_leg1 * t147 + minus_g2_wz_leg1 * t151;
-        let t155 = t123 * t130;
-        let t157 = t127 * t130;
-        let t159 = g2_vy_leg1 * t155 - minus_g2_wz_leg1 * t157;
+        let t95 = 2.5471335405424664 * t81 - 0.5 * minus_s2_leg3;
+        let t96 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t95 * t96;
+        let t101 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t81;
+        let g1_vy_leg3 = t101 * t96;
+        let g1_wz_leg3 = t38 * g1_vy_leg3 + t46 * minus_g1_vx_leg3;
+        let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t5;
+        let t112 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t115 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let t119 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t121 = minus_g1_vx_leg3 * t112 + g1_vy_leg3 * t115 + g1_wz_leg3 * t119;
+        ::overact::guard::platform(t121, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t121, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t121, 0.35754477384814676, "kept actuators")?;
+        let t122 = 1.0 / t121;
+        let t123 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t122;
+        let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
+        let t129 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t122;
+        let t131 = g2_vy_leg1 * t123 + minus_g2_wz_leg1 * t129;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t22 + t10 * t27);
+        let t138 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t122;
+        let t142 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t122;
+        let t144 = g2_vy_leg1 * t138 + minus_g2_wz_leg1 * t142;
+        let t146 = t115 * t122;
+        let t148 = t119 * t122;
+        let t150 = g2_vy_leg1 * t146 - minus_g2_wz_leg1 * t148;
         let c2_leg1 = 2.9411764705882355 * t10;
-        let t165 = c2_leg1 * minus_rate_dot_1_leg1;
-        let t171 = minus_s2_leg1 * minus_rate_dot_1_leg1;
-        let t180 = twist[2] - rate_2_leg1;
-        let t188 = t41 * twist[2];
-        let t190 = acceleration[0] + t47 * acceleration[2] - twist[2] * t188;
-        let t194 = t47 * twist[2];
-        let t196 = acceleration[1] + t41 * acceleration[2] + twist[2] * t194;
+        let t156 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t162 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t171 = twist[2] - rate_2_leg1;
+        let t179 = t39 * twist[2];
+        let t181 = acceleration[0] + t47 * acceleration[2] - twist[2] * t179;
+        let t185 = t47 * twist[2];
+        let t187 = acceleration[1] + t39 * acceleration[2] + twist[2] * t185;
         let minus_g2_vx_leg2 = 2.5471335405424664 * t66;
-        let t200 = twist[0] + t194;
+        let t191 = twist[0] + t185;
         let minus_g2_vy_leg2 = 1.4705882352941178 * t66;
-        let t203 = twist[1] + t188;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t200 + minus_g2_vy_leg2 * t203;
-        let t206 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t208 = t71 * t190 + t65 * t196 + 0.34 * t206;
-        let minus_rate_dot_1_leg2 = t66 * t208;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t203;
-        let t218 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
-            * t130;
-        let minus_g2_wz_leg2 = t41 * minus_g2_vy_leg2 + t47 * minus_g2_vx_leg2;
-        let t225 = minus_g2_vy_leg2 * t131 - minus_g2_vx_leg2 * t218
-            - minus_g2_wz_leg2 * t138;
-        let t229 = 0.8660254037844386 * t190 + 0.5 * t196;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t66 * (t229 + t63 * t206);
-        let t237 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t130;
-        let t242 = minus_g2_vx_leg2 * t237 - minus_g2_vy_leg2 * t147
-            + minus_g2_wz_leg2 * t151;
-        let t244 = t120 * t130;
-        let t249 = minus_g2_vx_leg2 * t244 - minus_g2_vy_leg2 * t155
-            - minus_g2_wz_leg2 * t157;
+        let t194 = twist[1] + t179;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t191 + minus_g2_vy_leg2 * t194;
+        let t197 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t199 = t71 * t181 + t65 * t187 + 0.34 * t197;
+        let minus_rate_dot_1_leg2 = t66 * t199;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t191 + minus_g1_vy_leg2 * t194;
+        let t209 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t122;
+        let t212 = 2.9411764705882355 * t66;
+        let minus_g2_wz_leg2 = t2 * t212;
+        let t215 = minus_g2_vy_leg2 * t123 - minus_g2_vx_leg2 * t209
+            - minus_g2_wz_leg2 * t129;
+        let t218 = 0.8660254037844386 * t181 + 0.5 * t187;
+        let minus_rate_dot_2_leg2 = t212 * (t218 + t63 * t197);
+        let t226 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t122;
+        let t231 = minus_g2_vx_leg2 * t226 - minus_g2_vy_leg2 * t138
+            + minus_g2_wz_leg2 * t142;
+        let t233 = t112 * t122;
+        let t238 = minus_g2_vx_leg2 * t233 - minus_g2_vy_leg2 * t146
+            - minus_g2_wz_leg2 * t148;
         let minus_c2_leg2 = 2.9411764705882355 * t63;
-        let t252 = minus_c2_leg2 * minus_rate_dot_1_leg2;
-        let t269 = minus_rate_2_leg2 + twist[2];
-        let t277 = t78 * twist[2];
-        let t279 = acceleration[0] - t85 * acceleration[2] - twist[2] * t277;
-        let t283 = t85 * twist[2];
-        let t285 = acceleration[1] + t78 * acceleration[2] - twist[2] * t283;
-        let g2_vx_leg3 = 2.5471335405424664 * t104;
-        let t289 = twist[0] - t283;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t104;
-        let t292 = twist[1] + t277;
-        let rate_2_leg3 = g2_vx_leg3 * t289 - minus_g2_vy_leg3 * t292;
-        let t295 = rate_2_leg3 * rate_2_leg3;
-        let t297 = t103 * t279 - t109 * t285 + 0.34 * t295;
-        let minus_rate_dot_1_leg3 = t104 * t297;
-        let rate_1_leg3 = g1_vy_leg3 * t292 - minus_g1_vx_leg3 * t289;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t104)
-            + 0.2037706832433973 * (minus_s23_leg2 * t104);
-        let t312 = g2_vx_leg3 * t218 + minus_g2_vy_leg3 * t131 - minus_g2_wz_leg3 * t138;
-        let t316 = 0.5 * t285 - 0.8660254037844386 * t279;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t104 * (t316 - t89 * t295);
-        let t325 = minus_g2_wz_leg3 * t151
-            - (g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t147);
-        let t331 = g2_vx_leg3 * t244 + minus_g2_vy_leg3 * t155 + minus_g2_wz_leg3 * t157;
-        let c2_leg3 = 2.9411764705882355 * t89;
-        let t334 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t351 = twist[2] - rate_2_leg3;
-        let t362 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t365 = 12.5 * (t25 + t22);
-        let t368 = 12.5 * (t3 - t7);
-        let t387 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t241 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t258 = minus_rate_2_leg2 + twist[2];
+        let t266 = t38 * twist[2];
+        let t268 = acceleration[0] - t46 * acceleration[2] - twist[2] * t266;
+        let t272 = t46 * twist[2];
+        let t274 = acceleration[1] + t38 * acceleration[2] - twist[2] * t272;
+        let g2_vx_leg3 = 2.5471335405424664 * t96;
+        let t278 = twist[0] - t272;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t96;
+        let t281 = twist[1] + t266;
+        let rate_2_leg3 = g2_vx_leg3 * t278 - minus_g2_vy_leg3 * t281;
+        let t284 = rate_2_leg3 * rate_2_leg3;
+        let t286 = t95 * t268 - t101 * t274 + 0.34 * t284;
+        let minus_rate_dot_1_leg3 = t96 * t286;
+        let rate_1_leg3 = g1_vy_leg3 * t281 - minus_g1_vx_leg3 * t278;
+        let t295 = 2.9411764705882355 * t96;
+        let minus_g2_wz_leg3 = t2 * t295;
+        let t298 = g2_vx_leg3 * t209 + minus_g2_vy_leg3 * t123 - minus_g2_wz_leg3 * t129;
+        let t301 = 0.5 * t274 - 0.8660254037844386 * t268;
+        let minus_rate_dot_2_leg3 = t295 * (t301 - t81 * t284);
+        let t310 = minus_g2_wz_leg3 * t142
+            - (g2_vx_leg3 * t226 + minus_g2_vy_leg3 * t138);
+        let t316 = g2_vx_leg3 * t233 + minus_g2_vy_leg3 * t146 + minus_g2_wz_leg3 * t148;
+        let c2_leg3 = 2.9411764705882355 * t81;
+        let t319 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t336 = twist[2] - rate_2_leg3;
+        let t345 = 12.5 * t7;
+        let t347 = 12.5 * t21;
+        let t352 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t370 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, -minus_rate_1_leg1,
-                -::overact::math::sign(minus_rate_1_leg1), 1.0, -(t140 * rate_dot_2_leg1),
-                minus_s2_leg1 * t31 + c2_leg1 * rate_dot_2_leg1 + t140 * t165,
-                2.9411764705882355 * t26 + t140 * t171, -minus_rate_dot_1_leg1,
-                -::overact::math::signed(t140, rate_2_leg1),
-                ::overact::math::signed(t140 + t138, t180), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t225 * minus_rate_dot_2_leg2), t225 * t252, -(t225 * t208), 0.0,
-                -::overact::math::signed(t225, minus_rate_2_leg2),
-                ::overact::math::signed(t138 - t225, t269), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t312 * minus_rate_dot_2_leg3), -(t312 * t334), -(t312 * t297), 0.0,
-                ::overact::math::signed(t312, rate_2_leg3),
-                ::overact::math::signed(t138 - t312, t351), t138 * acceleration[2],
-                t138 * t362 - (t218 * t365 + t131 * t368), t131 * t365 - t218 * t368 - t138 * t387,
-                t218 * acceleration[0] - t131 * acceleration[1],
+                -::overact::math::sign(minus_rate_1_leg1), 1.0, -(t131 * rate_dot_2_leg1),
+                minus_s2_leg1 * t27 + c2_leg1 * rate_dot_2_leg1 + t131 * t156,
+                2.9411764705882355 * t22 + t131 * t162, -minus_rate_dot_1_leg1,
+                -::overact::math::signed(t131, rate_2_leg1),
+                ::overact::math::signed(t131 + t129, t171), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t215 * minus_rate_dot_2_leg2), t215 * t241, -(t215 * t199), 0.0,
+                -::overact::math::signed(t215, minus_rate_2_leg2),
+                ::overact::math::signed(t129 - t215, t258), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t298 * minus_rate_dot_2_leg3), -(t298 * t319), -(t298 * t286), 0.0,
+                ::overact::math::signed(t298, rate_2_leg3),
+                ::overact::math::signed(t129 - t298, t336), t129 * acceleration[2],
+                t123 * t345 - t209 * t347 + t129 * t352, t209 * t345 + t123 * t347 - t129 * t370,
+                t209 * acceleration[0] - t123 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t153 * rate_dot_2_leg1, -(t153 * t165), -(t153 * t171),
-                0.0, ::overact::math::signed(t153, rate_2_leg1),
-                -::overact::math::signed(t153 + t151, t180), -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, t144 * rate_dot_2_leg1, -(t144 * t156), -(t144 * t162),
+                0.0, ::overact::math::signed(t144, rate_2_leg1),
+                -::overact::math::signed(t144 + t142, t171), -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t242 * minus_rate_dot_2_leg2),
-                minus_s2_leg2 * t206 + minus_c2_leg2 * minus_rate_dot_2_leg2
-                    + t242 * t252,
-                -(2.9411764705882355 * t229 + t242 * t208),
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t231 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t197 + minus_c2_leg2 * minus_rate_dot_2_leg2
+                    + t231 * t241,
+                -(2.9411764705882355 * t218 + t231 * t199),
                 -minus_rate_dot_1_leg2,
-                -::overact::math::signed(t242, minus_rate_2_leg2),
-                -::overact::math::signed(t242 + t151, t269),
+                -::overact::math::signed(t231, minus_rate_2_leg2),
+                -::overact::math::signed(t231 + t142, t258),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -(t325 * minus_rate_dot_2_leg3),
-                -(t325 * t334),
-                -(t325 * t297),
+                -(t310 * minus_rate_dot_2_leg3),
+                -(t310 * t319),
+                -(t310 * t286),
                 0.0,
-                ::overact::math::signed(t325, rate_2_leg3),
-                -::overact::math::signed(t325 + t151, t351),
-                -(t151 * acceleration[2]),
-                t237 * t365 + t147 * t368 - t151 * t362,
-                t237 * t368 - t147 * t365 + t151 * t387,
-                t147 * acceleration[1] - t237 * acceleration[0],
+                ::overact::math::signed(t310, rate_2_leg3),
+                -::overact::math::signed(t310 + t142, t336),
+                -(t142 * acceleration[2]),
+                t226 * t347 - t138 * t345 - t142 * t352,
+                t142 * t370 - (t226 * t345 + t138 * t347),
+                t138 * acceleration[1] - t226 * acceleration[0],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t159 * rate_dot_2_leg1, -(t159 * t165), -(t159 * t171),
-                0.0, ::overact::math::signed(t159, rate_2_leg1),
-                ::overact::math::signed(t157 - t159, t180), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t249 * minus_rate_dot_2_leg2), t249 * t252, -(t249 * t208), 0.0,
-                -::overact::math::signed(t249, minus_rate_2_leg2),
-                ::overact::math::signed(t157 - t249, t269), -minus_rate_dot_1_leg3,
+                0.0, 0.0, 0.0, 0.0, 0.0, t150 * rate_dot_2_leg1, -(t150 * t156), -(t150 * t162),
+                0.0, ::overact::math::signed(t150, rate_2_leg1),
+                ::overact::math::signed(t148 - t150, t171), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t238 * minus_rate_dot_2_leg2), t238 * t241, -(t238 * t199), 0.0,
+                -::overact::math::signed(t238, minus_rate_2_leg2),
+                ::overact::math::signed(t148 - t238, t258), -minus_rate_dot_1_leg3,
                 -minus_rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0,
-                t331 * minus_rate_dot_2_leg3,
-                minus_s2_leg3 * t295 - c2_leg3 * minus_rate_dot_2_leg3 + t331 * t334,
-                t331 * t297 - 2.9411764705882355 * t316, -minus_rate_dot_1_leg3,
-                -::overact::math::signed(t331, rate_2_leg3),
-                ::overact::math::signed(t331 + t157, t351), t157 * acceleration[2],
-                t244 * t365 + t155 * t368 + t157 * t362, t244 * t368 - t155 * t365 - t157 * t387,
-                t155 * acceleration[1] - t244 * acceleration[0],
+                t316 * minus_rate_dot_2_leg3,
+                minus_s2_leg3 * t284 - c2_leg3 * minus_rate_dot_2_leg3 + t316 * t319,
+                t316 * t286 - 2.9411764705882355 * t301, -minus_rate_dot_1_leg3,
+                -::overact::math::signed(t316, rate_2_leg3),
+                ::overact::math::signed(t316 + t148, t336), t148 * acceleration[2],
+                t233 * t347 - t146 * t345 + t148 * t352, -(t233 * t345 + t146 * t347 + t148 * t370),
+                t146 * acceleration[1] - t233 * acceleration[0],
             ],
         ])
     }
@@ -1941,7 +1902,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 332 operations (113 additions, 215 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 295 intermediates.
+    /// 322 operations (109 additions, 209 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 285 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1956,24 +1917,23 @@ impl Planar3Prr {
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t2 = 0.08 * c_phi;
-        let t3 = t2 * acceleration[2];
-        let t5 = 0.08 * s_phi;
-        let t6 = t5 * twist[2];
-        let t7 = twist[2] * t6;
+        let t2 = 0.08 * s_phi;
+        let t3 = t2 * twist[2];
+        let t5 = 0.08 * c_phi;
+        let t7 = twist[2] * t3 - t5 * acceleration[2];
         let t11 = 1.0 / s2_leg1;
         let g1_vy_leg1 = c2_leg1 * t11;
-        let t13 = t5 * acceleration[2];
-        let t15 = t2 * twist[2];
-        let t16 = twist[2] * t15;
-        let t17 = acceleration[1] - t13 - t16;
+        let t13 = t5 * twist[2];
+        let t16 = twist[2] * t13 + t2 * acceleration[2];
+        let t17 = acceleration[1] - t16;
         let minus_g2_vy_leg1 = 2.9411764705882355 * t11;
-        let t21 = twist[1] - t6;
+        let t21 = twist[1] - t3;
         let minus_rate_2_leg1 = minus_g2_vy_leg1 * t21;
         let t23 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t3 + t7 - g1_vy_leg1 * t17
+        let minus_rate_dot_1_leg1 = acceleration[0] + t7 - g1_vy_leg1 * t17
             - t23 * (0.34 * t11);
-        let rate_1_leg1 = g1_vy_leg1 * t21 - (twist[0] - t15);
+        let t27 = g1_vy_leg1 * t21;
+        let rate_1_leg1 = t27 - (twist[0] - t13);
         let t35 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
         let t36 = 1.0 / s2_leg2;
         let g1_vx_leg2 = t35 * t36;
@@ -1994,7 +1954,7 @@ impl Planar3Prr {
         let t63 = t47 + t46;
         let t65 = t38 - t39;
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t63 + g1_vx_leg3 * t65;
-        let g1_wz_leg1 = t2 - g1_vy_leg1 * t5;
+        let g1_wz_leg1 = t5 - g1_vy_leg1 * t2;
         let t73 = g1_wz_leg1 * g1_vx_leg2 + g1_wz_leg2;
         let t77 = g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2;
         let t81 = g1_vy_leg1 * g1_vx_leg2 - minus_g1_vy_leg2;
@@ -2004,118 +1964,120 @@ impl Planar3Prr {
         ::overact::guard::platform(t83, 0.3575447738480267, "kept actuators")?;
         let t84 = 1.0 / t83;
         let t85 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t84;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t11);
-        let t92 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t84;
-        let t94 = minus_g2_vy_leg1 * t85 + g2_wz_leg1 * t92;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t17 + 0.34 * c2_leg1 * t23);
-        let t102 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_wz_leg3) * t84;
-        let t106 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vy_leg3) * t84;
-        let t108 = minus_g2_vy_leg1 * t102 + g2_wz_leg1 * t106;
-        let t110 = t73 * t84;
-        let t112 = t81 * t84;
-        let t114 = minus_g2_vy_leg1 * t110 + g2_wz_leg1 * t112;
-        let t119 = c2_leg1 * minus_rate_dot_1_leg1;
-        let t125 = s2_leg1 * minus_rate_dot_1_leg1;
-        let t134 = minus_rate_2_leg1 + twist[2];
-        let t142 = t40 * twist[2];
-        let t144 = acceleration[1] + t48 * acceleration[2] + twist[2] * t142;
-        let t148 = t48 * twist[2];
-        let t150 = acceleration[0] + t40 * acceleration[2] - twist[2] * t148;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1;
+        let t91 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t84;
+        let t93 = minus_g2_vy_leg1 * t85 + g2_wz_leg1 * t91;
+        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t17 + minus_rate_2_leg1 * t27);
+        let t100 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_wz_leg3) * t84;
+        let t104 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vy_leg3) * t84;
+        let t106 = minus_g2_vy_leg1 * t100 + g2_wz_leg1 * t104;
+        let t108 = t73 * t84;
+        let t110 = t81 * t84;
+        let t112 = minus_g2_vy_leg1 * t108 + g2_wz_leg1 * t110;
+        let t117 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t123 = s2_leg1 * minus_rate_dot_1_leg1;
+        let t132 = minus_rate_2_leg1 + twist[2];
+        let t140 = t40 * twist[2];
+        let t142 = acceleration[1] + t48 * acceleration[2] + twist[2] * t140;
+        let t146 = t48 * twist[2];
+        let t148 = acceleration[0] + t40 * acceleration[2] - twist[2] * t146;
         let g2_vx_leg2 = 2.5471335405424664 * t36;
-        let t154 = twist[0] + t142;
+        let t152 = twist[0] + t140;
         let g2_vy_leg2 = 1.4705882352941178 * t36;
-        let t157 = twist[1] + t148;
-        let rate_2_leg2 = g2_vx_leg2 * t154 + g2_vy_leg2 * t157;
-        let t160 = rate_2_leg2 * rate_2_leg2;
-        let t162 = t44 * t144 - t35 * t150 - 0.34 * t160;
-        let minus_rate_dot_1_leg2 = t36 * t162;
-        let rate_1_leg2 = g1_vx_leg2 * t154 - minus_g1_vy_leg2 * t157;
-        let g2_wz_leg2 = g2_vy_leg2 * t48 + g2_vx_leg2 * t40;
-        let t175 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+        let t155 = twist[1] + t146;
+        let rate_2_leg2 = g2_vx_leg2 * t152 + g2_vy_leg2 * t155;
+        let t158 = rate_2_leg2 * rate_2_leg2;
+        let t159 = 0.34 * t158;
+        let t160 = t44 * t142 - t35 * t148 - t159;
+        let minus_rate_dot_1_leg2 = t36 * t160;
+        let rate_1_leg2 = g1_vx_leg2 * t152 - minus_g1_vy_leg2 * t155;
+        let t166 = 2.9411764705882355 * t36;
+        let g2_wz_leg2 = t2 * t166;
+        let t172 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
             * t84;
-        let t179 = g2_wz_leg2 * t92 - (g2_vx_leg2 * t175 + g2_vy_leg2 * t85);
-        let t185 = 0.8660254037844386 * t150 + 0.5 * t144;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t36
-            * (t160 * (0.34 * c2_leg2) - t185);
-        let t193 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3) * t84;
-        let t197 = g2_vy_leg2 * t102 - g2_vx_leg2 * t193 - g2_wz_leg2 * t106;
-        let t200 = t77 * t84;
-        let t204 = g2_wz_leg2 * t112 - (g2_vx_leg2 * t200 + g2_vy_leg2 * t110);
-        let t206 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t223 = twist[2] - rate_2_leg2;
-        let t231 = t63 * twist[2];
-        let t233 = acceleration[0] - t65 * acceleration[2] - twist[2] * t231;
-        let t237 = t65 * twist[2];
-        let t239 = acceleration[1] + t63 * acceleration[2] - twist[2] * t237;
+        let t176 = g2_wz_leg2 * t91 - (g2_vx_leg2 * t172 + g2_vy_leg2 * t85);
+        let t180 = 0.8660254037844386 * t148 + 0.5 * t142;
+        let minus_rate_dot_2_leg2 = t166 * (c2_leg2 * t159 - t180);
+        let t188 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3) * t84;
+        let t192 = g2_vy_leg2 * t100 - g2_vx_leg2 * t188 - g2_wz_leg2 * t104;
+        let t195 = t77 * t84;
+        let t199 = g2_wz_leg2 * t110 - (g2_vx_leg2 * t195 + g2_vy_leg2 * t108);
+        let t201 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t218 = twist[2] - rate_2_leg2;
+        let t226 = t63 * twist[2];
+        let t228 = acceleration[0] - t65 * acceleration[2] - twist[2] * t226;
+        let t232 = t65 * twist[2];
+        let t234 = acceleration[1] + t63 * acceleration[2] - twist[2] * t232;
         let g2_vy_leg3 = 1.4705882352941178 * t56;
-        let t243 = twist[1] + t231;
+        let t238 = twist[1] + t226;
         let minus_g2_vx_leg3 = 2.5471335405424664 * t56;
-        let t246 = twist[0] - t237;
-        let rate_2_leg3 = g2_vy_leg3 * t243 - minus_g2_vx_leg3 * t246;
-        let t249 = rate_2_leg3 * rate_2_leg3;
-        let t251 = t55 * t233 - t61 * t239 + 0.34 * t249;
-        let rate_dot_1_leg3 = t56 * t251;
-        let rate_1_leg3 = g1_vx_leg3 * t246 - minus_g1_vy_leg3 * t243;
-        let g2_wz_leg3 = g2_vy_leg3 * t63 + minus_g2_vx_leg3 * t65;
-        let t264 = minus_g2_vx_leg3 * t175 - g2_vy_leg3 * t85 + g2_wz_leg3 * t92;
-        let t268 = 0.5 * t239 - 0.8660254037844386 * t233;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t56
-            * (t268 - t249 * (0.34 * c2_leg3));
-        let t278 = minus_g2_vx_leg3 * t193 + g2_vy_leg3 * t102 - g2_wz_leg3 * t106;
-        let t284 = minus_g2_vx_leg3 * t200 - g2_vy_leg3 * t110 + g2_wz_leg3 * t112;
-        let t286 = c2_leg3 * rate_dot_1_leg3;
-        let t303 = twist[2] - rate_2_leg3;
-        let t313 = 12.5 * (t16 + t13);
-        let t316 = 12.5 * (t3 - t7);
-        let t321 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t339 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t241 = twist[0] - t232;
+        let rate_2_leg3 = g2_vy_leg3 * t238 - minus_g2_vx_leg3 * t241;
+        let t244 = rate_2_leg3 * rate_2_leg3;
+        let t245 = 0.34 * t244;
+        let t246 = t55 * t228 - t61 * t234 + t245;
+        let rate_dot_1_leg3 = t56 * t246;
+        let rate_1_leg3 = g1_vx_leg3 * t241 - minus_g1_vy_leg3 * t238;
+        let t255 = 2.9411764705882355 * t56;
+        let g2_wz_leg3 = t2 * t255;
+        let t258 = minus_g2_vx_leg3 * t172 - g2_vy_leg3 * t85 + g2_wz_leg3 * t91;
+        let t261 = 0.5 * t234 - 0.8660254037844386 * t228;
+        let rate_dot_2_leg3 = t255 * (t261 - c2_leg3 * t245);
+        let t270 = minus_g2_vx_leg3 * t188 + g2_vy_leg3 * t100 - g2_wz_leg3 * t104;
+        let t276 = minus_g2_vx_leg3 * t195 - g2_vy_leg3 * t108 + g2_wz_leg3 * t110;
+        let t278 = c2_leg3 * rate_dot_1_leg3;
+        let t295 = twist[2] - rate_2_leg3;
+        let t304 = 12.5 * t16;
+        let t306 = 12.5 * t7;
+        let t311 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t329 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -(t94 * minus_rate_dot_2_leg1),
-                -(s2_leg1 * t23 + c2_leg1 * minus_rate_dot_2_leg1 + t94 * t119),
-                2.9411764705882355 * t17 + t94 * t125, -minus_rate_dot_1_leg1,
-                -::overact::math::signed(t94, minus_rate_2_leg1),
-                ::overact::math::signed(t92 - t94, t134), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t179 * minus_rate_dot_2_leg2), -(t179 * t206), t179 * t162, 0.0,
-                ::overact::math::signed(t179, rate_2_leg2),
-                ::overact::math::signed(t92 - t179, t223), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t264 * rate_dot_2_leg3, t264 * t286, -(t264 * t251), 0.0,
-                ::overact::math::signed(t264, rate_2_leg3),
-                ::overact::math::signed(t92 - t264, t303), t92 * acceleration[2],
-                t175 * t313 - t85 * t316 + t92 * t321, t175 * t316 + t85 * t313 - t92 * t339,
-                -(t175 * acceleration[0] + t85 * acceleration[1]),
+                ::overact::math::sign(rate_1_leg1), 1.0, -(t93 * minus_rate_dot_2_leg1),
+                -(s2_leg1 * t23 + c2_leg1 * minus_rate_dot_2_leg1 + t93 * t117),
+                2.9411764705882355 * t17 + t93 * t123, -minus_rate_dot_1_leg1,
+                -::overact::math::signed(t93, minus_rate_2_leg1),
+                ::overact::math::signed(t91 - t93, t132), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t176 * minus_rate_dot_2_leg2), -(t176 * t201), t176 * t160, 0.0,
+                ::overact::math::signed(t176, rate_2_leg2),
+                ::overact::math::signed(t91 - t176, t218), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t258 * rate_dot_2_leg3, t258 * t278, -(t258 * t246), 0.0,
+                ::overact::math::signed(t258, rate_2_leg3),
+                ::overact::math::signed(t91 - t258, t295), t91 * acceleration[2],
+                t172 * t304 + t85 * t306 + t91 * t311, t85 * t304 - t172 * t306 - t91 * t329,
+                -(t172 * acceleration[0] + t85 * acceleration[1]),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t108 * minus_rate_dot_2_leg1, t108 * t119, -(t108 * t125),
-                0.0, ::overact::math::signed(t108, minus_rate_2_leg1),
-                ::overact::math::signed(t108 - t106, t134), -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, t106 * minus_rate_dot_2_leg1, t106 * t117, -(t106 * t123),
+                0.0, ::overact::math::signed(t106, minus_rate_2_leg1),
+                ::overact::math::signed(t106 - t104, t132), -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
-                -(t197 * minus_rate_dot_2_leg2),
-                -(s2_leg2 * t160 + c2_leg2 * minus_rate_dot_2_leg2 + t197 * t206),
-                t197 * t162 - 2.9411764705882355 * t185, -minus_rate_dot_1_leg2,
-                ::overact::math::signed(t197, rate_2_leg2),
-                -::overact::math::signed(t197 + t106, t223), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t278 * rate_dot_2_leg3, t278 * t286, -(t278 * t251), 0.0,
-                ::overact::math::signed(t278, rate_2_leg3),
-                -::overact::math::signed(t278 + t106, t303), -(t106 * acceleration[2]),
-                t193 * t313 + t102 * t316 - t106 * t321, t193 * t316 - t102 * t313 + t106 * t339,
-                t102 * acceleration[1] - t193 * acceleration[0],
+                -(t192 * minus_rate_dot_2_leg2),
+                -(s2_leg2 * t158 + c2_leg2 * minus_rate_dot_2_leg2 + t192 * t201),
+                t192 * t160 - 2.9411764705882355 * t180, -minus_rate_dot_1_leg2,
+                ::overact::math::signed(t192, rate_2_leg2),
+                -::overact::math::signed(t192 + t104, t218), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t270 * rate_dot_2_leg3, t270 * t278, -(t270 * t246), 0.0,
+                ::overact::math::signed(t270, rate_2_leg3),
+                -::overact::math::signed(t270 + t104, t295), -(t104 * acceleration[2]),
+                t188 * t304 - t100 * t306 - t104 * t311, t104 * t329 - (t188 * t306 + t100 * t304),
+                t100 * acceleration[1] - t188 * acceleration[0],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t114 * minus_rate_dot_2_leg1), -(t114 * t119),
-                t114 * t125, 0.0, -::overact::math::signed(t114, minus_rate_2_leg1),
-                ::overact::math::signed(t112 - t114, t134), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t204 * minus_rate_dot_2_leg2), -(t204 * t206), t204 * t162, 0.0,
-                ::overact::math::signed(t204, rate_2_leg2),
-                ::overact::math::signed(t112 - t204, t223), rate_dot_1_leg3, rate_dot_1_leg3,
-                rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0, t284 * rate_dot_2_leg3,
-                c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t249 + t284 * t286,
-                -(2.9411764705882355 * t268 + t284 * t251), rate_dot_1_leg3,
-                ::overact::math::signed(t284, rate_2_leg3),
-                ::overact::math::signed(t112 - t284, t303), t112 * acceleration[2],
-                t200 * t313 - t110 * t316 + t112 * t321, t200 * t316 + t110 * t313 - t112 * t339,
-                -(t200 * acceleration[0] + t110 * acceleration[1]),
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t112 * minus_rate_dot_2_leg1), -(t112 * t117),
+                t112 * t123, 0.0, -::overact::math::signed(t112, minus_rate_2_leg1),
+                ::overact::math::signed(t110 - t112, t132), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t199 * minus_rate_dot_2_leg2), -(t199 * t201), t199 * t160, 0.0,
+                ::overact::math::signed(t199, rate_2_leg2),
+                ::overact::math::signed(t110 - t199, t218), rate_dot_1_leg3, rate_dot_1_leg3,
+                rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0, t276 * rate_dot_2_leg3,
+                c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t244 + t276 * t278,
+                -(2.9411764705882355 * t261 + t276 * t246), rate_dot_1_leg3,
+                ::overact::math::signed(t276, rate_2_leg3),
+                ::overact::math::signed(t110 - t276, t295), t110 * acceleration[2],
+                t195 * t304 + t108 * t306 + t110 * t311, t108 * t304 - t195 * t306 - t110 * t329,
+                -(t195 * acceleration[0] + t108 * acceleration[1]),
             ],
         ])
     }
@@ -2130,7 +2092,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 482 operations (178 additions, 297 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 448 intermediates.
+    /// 459 operations (169 additions, 283 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 425 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2142,252 +2104,247 @@ impl Planar3Prr {
     ) -> Result<[[f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.08 * s_phi;
-        let t4 = pose[0] - t3;
-        let t5 = t4 * t4;
-        let t6 = 0.08 * c_phi;
-        let t8 = pose[1] + t6 - 0.3;
-        let t13 = 8.650519031141869 * (t5 - (t5 + t8 * t8 - 0.1156));
-        ::overact::guard::reach(t13, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t13);
+        let t3 = 0.08 * c_phi;
+        let t5 = pose[1] + t3 - 0.3;
+        let t8 = 8.650519031141869 * (0.1156 - t5 * t5);
+        ::overact::guard::reach(t8, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t8);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t15 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t15;
-        let t19 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t21 = pose[0] + t19 + 0.25980762113533157;
-        let t25 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let t10 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t10;
+        let t12 = 0.08 * s_phi;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t16 = 0.08 * minus_c23_leg2;
+        let t17 = t12 - t16;
+        let t19 = pose[0] + t17 + 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t24 = 0.08 * minus_s23_leg2;
+        let t25 = t3 + t24;
         let t27 = pose[1] - t25 + 0.15;
-        let t29 = 0.5 * t21 - 0.8660254037844386 * t27;
-        let t36 = 8.650519031141869 * (t29 * t29 - (t21 * t21 + t27 * t27 - 0.1156));
+        let t29 = 0.5 * t19 - 0.8660254037844386 * t27;
+        let t36 = 8.650519031141869 * (t29 * t29 - (t19 * t19 + t27 * t27 - 0.1156));
         ::overact::guard::reach(t36, "leg2")?;
         let minus_s2_leg2 = ::overact::math::sqrt(t36);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t41 = 0.8660254037844386 * t21 + 0.5 * t27;
+        let t41 = 0.8660254037844386 * t19 + 0.5 * t27;
         let t43 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t41;
         let t44 = 1.0 / minus_s2_leg2;
         let minus_g1_vy_leg2 = t43 * t44;
         let t49 = 2.5471335405424664 * t41 - 0.5 * minus_s2_leg2;
         let minus_g1_vx_leg2 = t49 * t44;
-        let minus_g1_wz_leg2 = t19 * minus_g1_vy_leg2 + t25 * minus_g1_vx_leg2;
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t56 = 0.08 * minus_c23_leg2;
-        let t58 = pose[0] + t56 - 0.25980762113533157;
-        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t63 = 0.08 * minus_s23_leg2;
-        let t65 = pose[1] + t63 + 0.15;
-        let t67 = 0.8660254037844386 * t58 - 0.5 * t65;
-        let t71 = 0.5 * t58 + 0.8660254037844386 * t65;
-        let t78 = 8.650519031141869 * (t71 * t71 - (t58 * t58 + t65 * t65 - 0.1156));
-        ::overact::guard::reach(t78, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t78);
+        let minus_g1_wz_leg2 = t17 * minus_g1_vy_leg2 + t25 * minus_g1_vx_leg2;
+        let t54 = pose[0] + t16 - 0.25980762113533157;
+        let t57 = pose[1] + t24 + 0.15;
+        let t59 = 0.8660254037844386 * t54 - 0.5 * t57;
+        let t63 = 0.5 * t54 + 0.8660254037844386 * t57;
+        let t70 = 8.650519031141869 * (t63 * t63 - (t54 * t54 + t57 * t57 - 0.1156));
+        ::overact::guard::reach(t70, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t70);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t81 = 2.5471335405424664 * t67 - 0.5 * minus_s2_leg3;
-        let t82 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t81 * t82;
-        let t87 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t67;
-        let g1_vy_leg3 = t87 * t82;
-        let g1_wz_leg3 = t56 * g1_vy_leg3 + t63 * minus_g1_vx_leg3;
-        let minus_g1_vy_leg1 = t8 * g2_vy_leg1;
-        let g1_wz_leg1 = t3 * minus_g1_vy_leg1 + t6;
-        let t99 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
-        let t102 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
-        let t106 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
-        let t108 = minus_g1_vx_leg3 * t99 + g1_vy_leg3 * t102 + g1_wz_leg3 * t106;
-        ::overact::guard::platform(t108, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t108, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t108, 0.35754477384814676, "kept actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
-            * t109;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t15);
-        let t117 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
-            * t109;
-        let t119 = g2_vy_leg1 * t110 + minus_g2_wz_leg1 * t117;
-        let t128 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        let t73 = 2.5471335405424664 * t59 - 0.5 * minus_s2_leg3;
+        let t74 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t73 * t74;
+        let t79 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t59;
+        let g1_vy_leg3 = t79 * t74;
+        let g1_wz_leg3 = t16 * g1_vy_leg3 + t24 * minus_g1_vx_leg3;
+        let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
+        let g1_wz_leg1 = t12 * minus_g1_vy_leg1 + t3;
+        let t91 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t94 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let t98 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t100 = minus_g1_vx_leg3 * t91 + g1_vy_leg3 * t94 + g1_wz_leg3 * t98;
+        ::overact::guard::platform(t100, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t100, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t100, 0.35754477384814676, "kept actuators")?;
+        let t101 = 1.0 / t100;
+        let t102 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t101;
+        let minus_g2_wz_leg1 = t12 * g2_vy_leg1;
+        let t108 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t101;
+        let t110 = g2_vy_leg1 * t102 + minus_g2_wz_leg1 * t108;
+        let t119 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t132 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t123 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t132, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t132, 2.5803571428571423, "actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = t128 * t133;
-        let t136 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+        ::overact::guard::platform(t123, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t123, 2.5803571428571423, "actuators")?;
+        let t124 = 1.0 / t123;
+        let t125 = t119 * t124;
+        let t127 = minus_g1_vy_leg1 * minus_g1_vy_leg1
             + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t128 * t134;
-        ::overact::guard::platform(t136, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t136, 2.580357142857142, "actuators")?;
-        let t137 = 1.0 / t136;
-        let t146 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - t119 * t125;
+        ::overact::guard::platform(t127, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t127, 2.580357142857142, "actuators")?;
+        let t128 = 1.0 / t127;
+        let t137 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t147 = t146 * t133;
-        let t156 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t128 * t147;
-        let t157 = t156 * t137;
-        let t159 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t146 * t147 - t156 * t157;
-        ::overact::guard::platform(t159, 0.0192, "actuators")?;
-        ::overact::guard::platform(t159, 0.0192, "actuators")?;
-        let t160 = 1.0 / t159;
-        let t169 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+        let t138 = t137 * t124;
+        let t147 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t119 * t138;
+        let t148 = t147 * t128;
+        let t150 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t137 * t138 - t147 * t148;
+        ::overact::guard::platform(t150, 0.0192, "actuators")?;
+        ::overact::guard::platform(t150, 0.0192, "actuators")?;
+        let t151 = 1.0 / t150;
+        let t160 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2];
-        let t178 = g1_vy_leg3 * actuator_velocities[2]
+        let t169 = g1_vy_leg3 * actuator_velocities[2]
             - (minus_g1_vy_leg1 * actuator_velocities[0]
-                + minus_g1_vy_leg2 * actuator_velocities[1]) + t169 * t134;
-        let rate_3_leg1 = t160
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t160 * t125;
+        let rate_3_leg1 = t151
             * (g1_wz_leg1 * actuator_velocities[0]
                 - minus_g1_wz_leg2 * actuator_velocities[1]
-                + g1_wz_leg3 * actuator_velocities[2] + t169 * t147 - t157 * t178);
-        let t182 = t63 * rate_3_leg1;
-        let t183 = rate_3_leg1 * t182;
-        let t185 = t56 * rate_3_leg1;
-        let t186 = rate_3_leg1 * t185;
-        let g2_vx_leg3 = 2.5471335405424664 * t82;
-        let t193 = t137 * t178 - t157 * rate_3_leg1;
-        let t197 = t169 * t133 + t134 * t193 + t147 * rate_3_leg1;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t82;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t197 + t182)
-            + minus_g2_vy_leg3 * (t193 + t185);
-        let t204 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t205 = 0.34 * t204;
-        let minus_rate_dot_1_leg3 = t82 * (t87 * t183 - t81 * t186 + t205);
-        let t208 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t210 = t3 * rate_3_leg1;
-        let t211 = rate_3_leg1 * t210;
-        let t213 = rate_3_leg1 * (t6 * rate_3_leg1);
-        let rate_2_leg1 = g2_vy_leg1 * (t193 - t210);
-        let t218 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t211 - minus_g1_vy_leg1 * t213 + t218 * (0.34 * t15);
-        let t222 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t224 = t19 * rate_3_leg1;
-        let t225 = rate_3_leg1 * t224;
-        let t227 = t25 * rate_3_leg1;
-        let t228 = rate_3_leg1 * t227;
+                + g1_wz_leg3 * actuator_velocities[2] + t160 * t138 - t148 * t169);
+        let t173 = t24 * rate_3_leg1;
+        let t174 = rate_3_leg1 * t173;
+        let t176 = t16 * rate_3_leg1;
+        let t177 = rate_3_leg1 * t176;
+        let g2_vx_leg3 = 2.5471335405424664 * t74;
+        let t184 = t128 * t169 - t148 * rate_3_leg1;
+        let t188 = t160 * t124 + t125 * t184 + t138 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t74;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t188 + t173)
+            + minus_g2_vy_leg3 * (t184 + t176);
+        let t195 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t74 * (t79 * t174 - t73 * t177 + 0.34 * t195);
+        let t199 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t201 = t12 * rate_3_leg1;
+        let t202 = rate_3_leg1 * t201;
+        let t203 = t25 * rate_3_leg1;
+        let t204 = rate_3_leg1 * t203;
+        let t205 = t204 - t174;
+        let rate_2_leg1 = g2_vy_leg1 * (t184 - t201);
+        let t210 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t202 - minus_g1_vy_leg1 * t205 + t210 * (0.34 * t10);
+        let t214 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t216 = t17 * rate_3_leg1;
+        let t217 = rate_3_leg1 * t216;
         let minus_g2_vx_leg2 = 2.5471335405424664 * t44;
         let minus_g2_vy_leg2 = 1.4705882352941178 * t44;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t227 - t197)
-            + minus_g2_vy_leg2 * (t193 + t224);
-        let t238 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t239 = 0.34 * t238;
-        let rate_dot_1_leg2 = t44 * (t49 * t225 - t43 * t228 - t239);
-        let t242 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t249 = t222 + minus_g1_vx_leg2 * t242 + minus_g1_vx_leg3 * t208;
-        let t251 = g1_vy_leg3 * t208
-            - (minus_g1_vy_leg1 * t222 + minus_g1_vy_leg2 * t242) + t134 * t249;
-        let rate_dot_3_leg1 = t160
-            * (g1_wz_leg1 * t222 - minus_g1_wz_leg2 * t242 + g1_wz_leg3 * t208
-                + t147 * t249 - t157 * t251);
-        let t264 = t137 * t251 - t157 * rate_dot_3_leg1;
-        let t265 = t3 * rate_dot_3_leg1;
-        let t267 = t264 - t265 - t213;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t267 + t8 * t218);
-        let t274 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t109;
-        let t278 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t109;
-        let t280 = g2_vy_leg1 * t274 + minus_g2_wz_leg1 * t278;
-        let t282 = t102 * t109;
-        let t284 = t106 * t109;
-        let t286 = g2_vy_leg1 * t282 - minus_g2_wz_leg1 * t284;
-        let c2_leg1 = 2.9411764705882355 * t8;
-        let t292 = c2_leg1 * actuator_accelerations[0];
-        let t298 = minus_s2_leg1 * actuator_accelerations[0];
-        let t307 = rate_3_leg1 - rate_2_leg1;
-        let t318 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
-            * t109;
-        let minus_g2_wz_leg2 = t19 * minus_g2_vy_leg2 + t25 * minus_g2_vx_leg2;
-        let t325 = minus_g2_vy_leg2 * t110 - minus_g2_vx_leg2 * t318
-            - minus_g2_wz_leg2 * t117;
-        let t332 = t133 * t249 + t134 * t264 + t147 * rate_dot_3_leg1;
-        let t334 = t25 * rate_dot_3_leg1 - t332 - t225;
-        let t338 = t264 + t19 * rate_dot_3_leg1 + t228;
-        let t340 = 0.8660254037844386 * t334 + 0.5 * t338;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t44 * (t340 + t41 * t238);
-        let t348 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t109;
-        let t353 = minus_g2_vx_leg2 * t348 - minus_g2_vy_leg2 * t274
-            + minus_g2_wz_leg2 * t278;
-        let t355 = t99 * t109;
-        let t360 = minus_g2_vx_leg2 * t355 - minus_g2_vy_leg2 * t282
-            - minus_g2_wz_leg2 * t284;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t203 - t188)
+            + minus_g2_vy_leg2 * (t184 + t216);
+        let t228 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t44 * (t49 * t217 - t43 * t204 - 0.34 * t228);
+        let t232 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t239 = t214 + minus_g1_vx_leg2 * t232 + minus_g1_vx_leg3 * t199;
+        let t241 = g1_vy_leg3 * t199
+            - (minus_g1_vy_leg1 * t214 + minus_g1_vy_leg2 * t232) + t125 * t239;
+        let rate_dot_3_leg1 = t151
+            * (g1_wz_leg1 * t214 - minus_g1_wz_leg2 * t232 + g1_wz_leg3 * t199
+                + t138 * t239 - t148 * t241);
+        let t254 = t128 * t241 - t148 * rate_dot_3_leg1;
+        let t256 = t205 + t12 * rate_dot_3_leg1;
+        let t257 = t254 - t256;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t257 + t5 * t210);
+        let t264 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t101;
+        let t268 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t101;
+        let t270 = g2_vy_leg1 * t264 + minus_g2_wz_leg1 * t268;
+        let t272 = t94 * t101;
+        let t274 = t98 * t101;
+        let t276 = g2_vy_leg1 * t272 - minus_g2_wz_leg1 * t274;
+        let c2_leg1 = 2.9411764705882355 * t5;
+        let t282 = c2_leg1 * actuator_accelerations[0];
+        let t288 = minus_s2_leg1 * actuator_accelerations[0];
+        let t297 = rate_3_leg1 - rate_2_leg1;
+        let t308 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t101;
+        let t311 = 2.9411764705882355 * t44;
+        let minus_g2_wz_leg2 = t12 * t311;
+        let t314 = minus_g2_vy_leg2 * t102 - minus_g2_vx_leg2 * t308
+            - minus_g2_wz_leg2 * t108;
+        let t320 = t124 * t239 + t125 * t254 + t138 * rate_dot_3_leg1;
+        let t328 = 0.8660254037844386 * (t25 * rate_dot_3_leg1 - t320 - t217)
+            + 0.5 * (t254 + t17 * rate_dot_3_leg1 + t204);
+        let minus_rate_dot_2_leg2 = t311 * (t328 + t41 * t228);
+        let t336 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t101;
+        let t341 = minus_g2_vx_leg2 * t336 - minus_g2_vy_leg2 * t264
+            + minus_g2_wz_leg2 * t268;
+        let t343 = t91 * t101;
+        let t348 = minus_g2_vx_leg2 * t343 - minus_g2_vy_leg2 * t272
+            - minus_g2_wz_leg2 * t274;
         let minus_c2_leg2 = 2.9411764705882355 * t41;
-        let t363 = minus_c2_leg2 * actuator_accelerations[1];
-        let t374 = t49 * t334 + t43 * t338 + t239;
-        let t384 = minus_rate_2_leg2 + rate_3_leg1;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t82)
-            + 0.2037706832433973 * (minus_s23_leg2 * t82);
-        let t400 = g2_vx_leg3 * t318 + minus_g2_vy_leg3 * t110 - minus_g2_wz_leg3 * t117;
-        let t404 = t332 + t63 * rate_dot_3_leg1 + t186;
-        let t408 = t264 + t56 * rate_dot_3_leg1 - t183;
-        let t410 = 0.8660254037844386 * t404 + 0.5 * t408;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t82 * (t410 - t67 * t204);
-        let t419 = minus_g2_wz_leg3 * t278
-            - (g2_vx_leg3 * t348 + minus_g2_vy_leg3 * t274);
-        let t425 = g2_vx_leg3 * t355 + minus_g2_vy_leg3 * t282 + minus_g2_wz_leg3 * t284;
-        let c2_leg3 = 2.9411764705882355 * t67;
-        let t428 = c2_leg3 * actuator_accelerations[2];
-        let t439 = t205 - (t81 * t404 + t87 * t408);
-        let t449 = minus_rate_2_leg3 + rate_3_leg1;
-        let t460 = s_phi * t332 + c_phi * t264;
-        let t463 = 12.5 * (t213 + t265);
-        let t467 = 12.5 * (t6 * rate_dot_3_leg1 - t211);
-        let t486 = s_phi * t264 - c_phi * t332;
+        let t351 = minus_c2_leg2 * actuator_accelerations[1];
+        let t359 = minus_s2_leg2 * actuator_accelerations[1];
+        let t369 = minus_rate_2_leg2 + rate_3_leg1;
+        let t379 = 2.9411764705882355 * t74;
+        let minus_g2_wz_leg3 = t12 * t379;
+        let t382 = g2_vx_leg3 * t308 + minus_g2_vy_leg3 * t102 - minus_g2_wz_leg3 * t108;
+        let t391 = 0.8660254037844386 * (t320 + t24 * rate_dot_3_leg1 + t177)
+            + 0.5 * (t254 + t16 * rate_dot_3_leg1 - t174);
+        let minus_rate_dot_2_leg3 = t379 * (t391 - t59 * t195);
+        let t400 = minus_g2_wz_leg3 * t268
+            - (g2_vx_leg3 * t336 + minus_g2_vy_leg3 * t264);
+        let t406 = g2_vx_leg3 * t343 + minus_g2_vy_leg3 * t272 + minus_g2_wz_leg3 * t274;
+        let c2_leg3 = 2.9411764705882355 * t59;
+        let t409 = c2_leg3 * actuator_accelerations[2];
+        let t417 = minus_s2_leg3 * actuator_accelerations[2];
+        let t427 = minus_rate_2_leg3 + rate_3_leg1;
+        let t438 = 12.5 * (t202 - t3 * rate_dot_3_leg1);
+        let t440 = 12.5 * t256;
+        let t445 = c_phi * t254 + s_phi * t320;
+        let t463 = c_phi * t320 - s_phi * t254;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, -(t119 * rate_dot_2_leg1),
-                minus_s2_leg1 * t218 + c2_leg1 * rate_dot_2_leg1 - t119 * t292,
-                2.9411764705882355 * t267 - t119 * t298, actuator_accelerations[0],
-                -::overact::math::signed(t119, rate_2_leg1),
-                ::overact::math::signed(t119 + t117, t307), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t325 * minus_rate_dot_2_leg2), -(t325 * t363), -(t325 * t374), 0.0,
-                -::overact::math::signed(t325, minus_rate_2_leg2),
-                ::overact::math::signed(t117 - t325, t384), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t400 * minus_rate_dot_2_leg3), t400 * t428, -(t400 * t439), 0.0,
-                -::overact::math::signed(t400, minus_rate_2_leg3),
-                ::overact::math::signed(t117 - t400, t449), t117 * rate_dot_3_leg1,
-                t117 * t460 - (t318 * t463 + t110 * t467), t110 * t463 - t318 * t467 - t117 * t486,
-                -(t318 * t332 + t110 * t264),
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -(t110 * rate_dot_2_leg1),
+                minus_s2_leg1 * t210 + c2_leg1 * rate_dot_2_leg1 - t110 * t282,
+                2.9411764705882355 * t257 - t110 * t288, actuator_accelerations[0],
+                -::overact::math::signed(t110, rate_2_leg1),
+                ::overact::math::signed(t110 + t108, t297), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t314 * minus_rate_dot_2_leg2), -(t314 * t351), t314 * t359, 0.0,
+                -::overact::math::signed(t314, minus_rate_2_leg2),
+                ::overact::math::signed(t108 - t314, t369), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t382 * minus_rate_dot_2_leg3), t382 * t409, t382 * t417, 0.0,
+                -::overact::math::signed(t382, minus_rate_2_leg3),
+                ::overact::math::signed(t108 - t382, t427), t108 * rate_dot_3_leg1,
+                t102 * t438 - t308 * t440 + t108 * t445, t308 * t438 + t102 * t440 + t108 * t463,
+                -(t308 * t320 + t102 * t254),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t280 * rate_dot_2_leg1, t280 * t292, t280 * t298, 0.0,
-                ::overact::math::signed(t280, rate_2_leg1),
-                -::overact::math::signed(t280 + t278, t307), actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, t270 * rate_dot_2_leg1, t270 * t282, t270 * t288, 0.0,
+                ::overact::math::signed(t270, rate_2_leg1),
+                -::overact::math::signed(t270 + t268, t297), actuator_accelerations[1],
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -(t353 * minus_rate_dot_2_leg2),
-                minus_s2_leg2 * t238 + minus_c2_leg2 * minus_rate_dot_2_leg2
-                    - t353 * t363,
-                -(2.9411764705882355 * t340 + t353 * t374),
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -(t341 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t228 + minus_c2_leg2 * minus_rate_dot_2_leg2
+                    - t341 * t351,
+                -(2.9411764705882355 * t328 - t341 * t359),
                 actuator_accelerations[1],
-                -::overact::math::signed(t353, minus_rate_2_leg2),
-                -::overact::math::signed(t353 + t278, t384),
+                -::overact::math::signed(t341, minus_rate_2_leg2),
+                -::overact::math::signed(t341 + t268, t369),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -(t419 * minus_rate_dot_2_leg3),
-                t419 * t428,
-                -(t419 * t439),
+                -(t400 * minus_rate_dot_2_leg3),
+                t400 * t409,
+                t400 * t417,
                 0.0,
-                -::overact::math::signed(t419, minus_rate_2_leg3),
-                -::overact::math::signed(t419 + t278, t449),
-                -(t278 * rate_dot_3_leg1),
-                t348 * t463 + t274 * t467 - t278 * t460,
-                t348 * t467 - t274 * t463 + t278 * t486,
-                t348 * t332 + t274 * t264,
+                -::overact::math::signed(t400, minus_rate_2_leg3),
+                -::overact::math::signed(t400 + t268, t427),
+                -(t268 * rate_dot_3_leg1),
+                t336 * t440 - t264 * t438 - t268 * t445,
+                -(t336 * t438 + t264 * t440 + t268 * t463),
+                t336 * t320 + t264 * t254,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t286 * rate_dot_2_leg1, t286 * t292, t286 * t298, 0.0,
-                ::overact::math::signed(t286, rate_2_leg1),
-                ::overact::math::signed(t284 - t286, t307), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t360 * minus_rate_dot_2_leg2), -(t360 * t363), -(t360 * t374), 0.0,
-                -::overact::math::signed(t360, minus_rate_2_leg2),
-                ::overact::math::signed(t284 - t360, t384), actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, t276 * rate_dot_2_leg1, t276 * t282, t276 * t288, 0.0,
+                ::overact::math::signed(t276, rate_2_leg1),
+                ::overact::math::signed(t274 - t276, t297), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t348 * minus_rate_dot_2_leg2), -(t348 * t351), t348 * t359, 0.0,
+                -::overact::math::signed(t348, minus_rate_2_leg2),
+                ::overact::math::signed(t274 - t348, t369), actuator_accelerations[2],
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, t425 * minus_rate_dot_2_leg3,
-                minus_s2_leg3 * t204 - c2_leg3 * minus_rate_dot_2_leg3 - t425 * t428,
-                t425 * t439 - 2.9411764705882355 * t410, actuator_accelerations[2],
-                ::overact::math::signed(t425, minus_rate_2_leg3),
-                ::overact::math::signed(t425 + t284, t449), t284 * rate_dot_3_leg1,
-                t355 * t463 + t282 * t467 + t284 * t460, t355 * t467 - t282 * t463 - t284 * t486,
-                t355 * t332 + t282 * t264,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, t406 * minus_rate_dot_2_leg3,
+                minus_s2_leg3 * t195 - c2_leg3 * minus_rate_dot_2_leg3 - t406 * t409,
+                -(t406 * t417 + 2.9411764705882355 * t391), actuator_accelerations[2],
+                ::overact::math::signed(t406, minus_rate_2_leg3),
+                ::overact::math::signed(t406 + t274, t427), t274 * rate_dot_3_leg1,
+                t343 * t440 - t272 * t438 + t274 * t445, t274 * t463 - (t343 * t438 + t272 * t440),
+                t343 * t320 + t272 * t254,
             ],
         ])
     }
@@ -2401,7 +2358,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 257 operations (89 additions, 165 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 215 intermediates.
+    /// 223 operations (75 additions, 145 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 181 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2413,128 +2370,120 @@ impl Planar3Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t3 = t2 * twist[2];
-        let t4 = twist[2] * t3;
         let t5 = 0.08 * s_phi;
-        let t6 = t5 * acceleration[2];
-        let t8 = 12.5 * (t4 + t6);
-        let t9 = t2 * acceleration[2];
-        let t10 = t5 * twist[2];
-        let t11 = twist[2] * t10;
-        let t13 = 12.5 * (t9 - t11);
-        let t23 = pose[1] + t2 - 0.3;
-        let t24 = pose[0] - t5;
-        let t25 = t24 * t24;
-        let t30 = 8.650519031141869 * (t25 - (t25 + t23 * t23 - 0.1156));
-        ::overact::guard::reach(t30, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t30);
+        let t7 = twist[2] * t3 + t5 * acceleration[2];
+        let t8 = 12.5 * t7;
+        let t9 = t5 * twist[2];
+        let t12 = twist[2] * t9 - t2 * acceleration[2];
+        let t13 = 12.5 * t12;
+        let t22 = pose[1] + t2 - 0.3;
+        let t25 = 8.650519031141869 * (0.1156 - t22 * t22);
+        ::overact::guard::reach(t25, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t25);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t32 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t32;
-        let minus_g1_vy_leg1 = t23 * g2_vy_leg1;
-        let t36 = acceleration[1] - t6 - t4;
-        let t37 = minus_g1_vy_leg1 * t36;
-        let t39 = twist[1] - t10;
-        let rate_2_leg1 = g2_vy_leg1 * t39;
-        let t41 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t9 + t11 + t37
-            + t41 * (0.34 * t32);
+        let t27 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t27;
+        let minus_g1_vy_leg1 = t22 * g2_vy_leg1;
+        let t30 = acceleration[1] - t7;
+        let t31 = minus_g1_vy_leg1 * t30;
+        let t33 = twist[1] - t9;
+        let rate_2_leg1 = g2_vy_leg1 * t33;
+        let t35 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t12 + acceleration[0] + t31 + t35 * (0.34 * t27);
         let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
-        let t51 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t53 = pose[0] + t51 + 0.25980762113533157;
-        let t57 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t59 = pose[1] - t57 + 0.15;
-        let t61 = 0.8660254037844386 * t53 + 0.5 * t59;
-        let t65 = 0.5 * t53 - 0.8660254037844386 * t59;
-        let t72 = 8.650519031141869 * (t65 * t65 - (t53 * t53 + t59 * t59 - 0.1156));
-        ::overact::guard::reach(t72, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t72);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t75 = 2.5471335405424664 * t61 - 0.5 * minus_s2_leg2;
-        let t76 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t75 * t76;
-        let t80 = t51 * twist[2];
-        let t82 = acceleration[0] + t57 * acceleration[2] - twist[2] * t80;
-        let t86 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t61;
-        let t89 = t57 * twist[2];
-        let t91 = acceleration[1] + t51 * acceleration[2] + twist[2] * t89;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t76;
-        let t95 = twist[0] + t89;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t76;
-        let t98 = twist[1] + t80;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t95 + minus_g2_vy_leg2 * t98;
-        let t101 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t103 = t75 * t82 + t86 * t91 + 0.34 * t101;
-        let minus_rate_dot_1_leg2 = t76 * t103;
-        let minus_g1_vy_leg2 = t86 * t76;
-        let minus_g1_wz_leg2 = t51 * minus_g1_vy_leg2 + t57 * minus_g1_vx_leg2;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t115 = 0.08 * minus_c23_leg2;
-        let t117 = pose[0] + t115 - 0.25980762113533157;
+        let t46 = 0.08 * minus_c23_leg2;
+        let t47 = t5 - t46;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t122 = 0.08 * minus_s23_leg2;
-        let t124 = pose[1] + t122 + 0.15;
-        let t126 = 0.8660254037844386 * t117 - 0.5 * t124;
-        let t130 = 0.5 * t117 + 0.8660254037844386 * t124;
-        let t137 = 8.650519031141869
-            * (t130 * t130 - (t117 * t117 + t124 * t124 - 0.1156));
-        ::overact::guard::reach(t137, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t137);
+        let t54 = 0.08 * minus_s23_leg2;
+        let t55 = t2 + t54;
+        let t56 = pose[1] + 0.15;
+        let t59 = 0.8660254037844386 * (pose[0] + t47 + 0.25980762113533157)
+            + 0.5 * (t56 - t55);
+        let t63 = 8.650519031141869 * (0.1156 - t59 * t59);
+        ::overact::guard::reach(t63, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t63);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t66 = 2.5471335405424664 * t59 - 0.5 * minus_s2_leg2;
+        let t67 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t66 * t67;
+        let t71 = t47 * twist[2];
+        let t73 = acceleration[0] + t55 * acceleration[2] - twist[2] * t71;
+        let t77 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t59;
+        let t80 = t55 * twist[2];
+        let t82 = acceleration[1] + t47 * acceleration[2] + twist[2] * t80;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t67;
+        let t86 = twist[0] + t80;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t67;
+        let t89 = twist[1] + t71;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t86 + minus_g2_vy_leg2 * t89;
+        let t92 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t94 = t66 * t73 + t77 * t82 + 0.34 * t92;
+        let minus_rate_dot_1_leg2 = t67 * t94;
+        let minus_g1_vy_leg2 = t77 * t67;
+        let t99 = 2.9411764705882355 * t67;
+        let minus_g2_wz_leg2 = t5 * t99;
+        let minus_g1_wz_leg2 = t59 * minus_g2_wz_leg2 - t2;
+        let t109 = 0.8660254037844386 * (pose[0] + t46 + -0.25980762113533157)
+            - 0.5 * (t54 + t56);
+        let t113 = 8.650519031141869 * (0.1156 - t109 * t109);
+        ::overact::guard::reach(t113, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t113);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t140 = 2.5471335405424664 * t126 - 0.5 * minus_s2_leg3;
-        let t141 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t140 * t141;
-        let t145 = t115 * twist[2];
-        let t147 = acceleration[0] - t122 * acceleration[2] - twist[2] * t145;
-        let t151 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t126;
-        let t154 = t122 * twist[2];
-        let t156 = acceleration[1] + t115 * acceleration[2] - twist[2] * t154;
-        let g2_vx_leg3 = 2.5471335405424664 * t141;
-        let t160 = twist[0] - t154;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t141;
-        let t163 = twist[1] + t145;
-        let rate_2_leg3 = g2_vx_leg3 * t160 - minus_g2_vy_leg3 * t163;
-        let t166 = rate_2_leg3 * rate_2_leg3;
-        let t168 = t140 * t147 - t151 * t156 + 0.34 * t166;
-        let minus_rate_dot_1_leg3 = t141 * t168;
-        let g1_vy_leg3 = t151 * t141;
-        let g1_wz_leg3 = t115 * g1_vy_leg3 + t122 * minus_g1_vx_leg3;
-        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t39;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t95 + minus_g1_vy_leg2 * t98;
-        let rate_1_leg3 = g1_vy_leg3 * t163 - minus_g1_vx_leg3 * t160;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t36 + t23 * t41);
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t32);
-        let t213 = 0.8660254037844386 * t82 + 0.5 * t91;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t76 * (t213 + t61 * t101);
-        let minus_g2_wz_leg2 = t51 * minus_g2_vy_leg2 + t57 * minus_g2_vx_leg2;
-        let t226 = 0.5 * t156 - 0.8660254037844386 * t147;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t141 * (t226 - t126 * t166);
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t141)
-            + 0.2037706832433973 * (minus_s23_leg2 * t141);
-        let t238 = 2.9411764705882355 * t36;
-        let t245 = 2.9411764705882355 * t213;
-        let t255 = 2.9411764705882355 * t226;
-        let t273 = twist[2] - rate_2_leg1;
-        let t277 = minus_rate_2_leg2 + twist[2];
-        let t282 = twist[2] - rate_2_leg3;
+        let t116 = 2.5471335405424664 * t109 - 0.5 * minus_s2_leg3;
+        let t117 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t116 * t117;
+        let t121 = t46 * twist[2];
+        let t123 = acceleration[0] - t54 * acceleration[2] - twist[2] * t121;
+        let t127 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t109;
+        let t130 = t54 * twist[2];
+        let t132 = acceleration[1] + t46 * acceleration[2] - twist[2] * t130;
+        let g2_vx_leg3 = 2.5471335405424664 * t117;
+        let t136 = twist[0] - t130;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t117;
+        let t139 = twist[1] + t121;
+        let rate_2_leg3 = g2_vx_leg3 * t136 - minus_g2_vy_leg3 * t139;
+        let t142 = rate_2_leg3 * rate_2_leg3;
+        let t144 = t116 * t123 - t127 * t132 + 0.34 * t142;
+        let minus_rate_dot_1_leg3 = t117 * t144;
+        let g1_vy_leg3 = t127 * t117;
+        let t149 = 2.9411764705882355 * t117;
+        let minus_g2_wz_leg3 = t5 * t149;
+        let g1_wz_leg3 = t2 + t109 * minus_g2_wz_leg3;
+        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t33;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t86 + minus_g1_vy_leg2 * t89;
+        let rate_1_leg3 = g1_vy_leg3 * t139 - minus_g1_vx_leg3 * t136;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t30 + t22 * t35);
+        let minus_g2_wz_leg1 = t5 * g2_vy_leg1;
+        let t188 = 0.8660254037844386 * t73 + 0.5 * t82;
+        let minus_rate_dot_2_leg2 = t99 * (t188 + t59 * t92);
+        let t197 = 0.5 * t132 - 0.8660254037844386 * t123;
+        let minus_rate_dot_2_leg3 = t149 * (t197 - t109 * t142);
+        let t204 = 2.9411764705882355 * t30;
+        let t211 = 2.9411764705882355 * t188;
+        let t221 = 2.9411764705882355 * t197;
+        let t239 = twist[2] - rate_2_leg1;
+        let t243 = minus_rate_2_leg2 + twist[2];
+        let t248 = twist[2] - rate_2_leg3;
         Ok([
             [
-                0.0, -t8, -t13, acceleration[0], minus_rate_dot_1_leg1,
+                0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, minus_g1_vx_leg3 * minus_rate_dot_1_leg3,
                 minus_rate_1_leg1, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 -(minus_g1_vx_leg3 * rate_1_leg3), ::overact::math::sign(minus_rate_1_leg1),
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -1.0, -minus_g1_vx_leg2,
                 -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t238,
-                minus_g1_vx_leg2 * t245 + minus_g2_vx_leg2 * t103,
-                minus_g1_vx_leg3 * t255 - g2_vx_leg3 * t168, 0.0,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t204,
+                minus_g1_vx_leg2 * t211 + minus_g2_vx_leg2 * t94,
+                minus_g1_vx_leg3 * t221 - g2_vx_leg3 * t144, 0.0,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(g2_vx_leg3, rate_2_leg3), 0.0,
-                ::overact::math::signed(minus_g2_vx_leg2, t277),
-                -::overact::math::signed(g2_vx_leg3, t282),
+                ::overact::math::signed(minus_g2_vx_leg2, t243),
+                -::overact::math::signed(g2_vx_leg3, t248),
             ],
             [
-                0.0, t13, -t8, acceleration[1], minus_g1_vy_leg1 * minus_rate_dot_1_leg1,
+                0.0, -t13, -t8, acceleration[1], minus_g1_vy_leg1 * minus_rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(g1_vy_leg3 * minus_rate_dot_1_leg3),
                 minus_g1_vy_leg1 * minus_rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
                 g1_vy_leg3 * rate_1_leg3,
@@ -2543,19 +2492,19 @@ impl Planar3Prr {
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg1,
                 -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                -(2.9411764705882355 * (t37 + minus_rate_dot_1_leg1)),
-                minus_g1_vy_leg2 * t245 + 1.4705882352941178 * minus_rate_dot_1_leg2,
-                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t255,
+                -(2.9411764705882355 * (t31 + minus_rate_dot_1_leg1)),
+                minus_g1_vy_leg2 * t211 + 1.4705882352941178 * minus_rate_dot_1_leg2,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t221,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg1, t273),
-                ::overact::math::signed(minus_g2_vy_leg2, t277),
-                ::overact::math::signed(minus_g2_vy_leg3, t282),
+                -::overact::math::signed(g2_vy_leg1, t239),
+                ::overact::math::signed(minus_g2_vy_leg2, t243),
+                ::overact::math::signed(minus_g2_vy_leg3, t248),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 -(g1_wz_leg1 * minus_rate_dot_1_leg1), minus_g1_wz_leg2 * minus_rate_dot_1_leg2,
                 -(g1_wz_leg3 * minus_rate_dot_1_leg3), -(g1_wz_leg1 * minus_rate_1_leg1),
                 minus_g1_wz_leg2 * minus_rate_1_leg2, g1_wz_leg3 * rate_1_leg3,
@@ -2564,16 +2513,16 @@ impl Planar3Prr {
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg1, -minus_g1_wz_leg2,
                 g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg1 * t238
+                g1_wz_leg1 * t204
                     + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
-                minus_g1_wz_leg2 * t245 + minus_g2_wz_leg2 * t103,
-                minus_g2_wz_leg3 * t168 - g1_wz_leg3 * t255,
+                minus_g1_wz_leg2 * t211 + minus_g2_wz_leg2 * t94,
+                minus_g2_wz_leg3 * t144 - g1_wz_leg3 * t221,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t273),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t277),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t282),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t239),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t243),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t248),
             ],
         ])
     }
@@ -2588,7 +2537,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 209 operations (65 additions, 141 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 170 intermediates.
+    /// 199 operations (61 additions, 135 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 160 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2605,105 +2554,103 @@ impl Planar3Prr {
         ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
         let t2 = 0.08 * c_phi;
         let t3 = t2 * twist[2];
-        let t4 = twist[2] * t3;
         let t5 = 0.08 * s_phi;
-        let t6 = t5 * acceleration[2];
-        let t8 = 12.5 * (t4 + t6);
-        let t9 = t2 * acceleration[2];
-        let t10 = t5 * twist[2];
-        let t11 = twist[2] * t10;
-        let t13 = 12.5 * (t9 - t11);
-        let t24 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t24;
-        let t27 = acceleration[1] - t6 - t4;
-        let t28 = g1_vy_leg1 * t27;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t24;
-        let t31 = twist[1] - t10;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t31;
-        let t33 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t9 + t11 - t28
-            - t33 * (0.34 * t24);
+        let t7 = twist[2] * t3 + t5 * acceleration[2];
+        let t8 = 12.5 * t7;
+        let t9 = t5 * twist[2];
+        let t12 = twist[2] * t9 - t2 * acceleration[2];
+        let t13 = 12.5 * t12;
+        let t23 = 1.0 / s2_leg1;
+        let g1_vy_leg1 = c2_leg1 * t23;
+        let t25 = acceleration[1] - t7;
+        let t26 = g1_vy_leg1 * t25;
+        let minus_g2_vy_leg1 = 2.9411764705882355 * t23;
+        let t29 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t29;
+        let minus_rate_dot_1_leg1 = t12 + acceleration[0] - t26
+            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 * t23);
         let g1_wz_leg1 = t2 - g1_vy_leg1 * t5;
-        let t45 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t46 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t45 * t46;
-        let t50 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t51 = 0.04 * s_phi;
-        let t52 = 0.06928203230275509 * c_phi;
-        let t53 = t51 - t52;
-        let t56 = 0.06928203230275509 * s_phi;
-        let t57 = 0.04 * c_phi;
-        let t58 = t56 + t57;
-        let t59 = t58 * twist[2];
-        let t61 = acceleration[1] + t53 * acceleration[2] + twist[2] * t59;
-        let t65 = t53 * twist[2];
-        let t67 = acceleration[0] + t58 * acceleration[2] - twist[2] * t65;
-        let g2_vx_leg2 = 2.5471335405424664 * t46;
-        let t71 = twist[0] + t59;
-        let g2_vy_leg2 = 1.4705882352941178 * t46;
-        let t74 = twist[1] + t65;
-        let rate_2_leg2 = g2_vx_leg2 * t71 + g2_vy_leg2 * t74;
-        let t77 = rate_2_leg2 * rate_2_leg2;
-        let t79 = t50 * t61 - t45 * t67 - 0.34 * t77;
-        let minus_rate_dot_1_leg2 = t46 * t79;
-        let minus_g1_vy_leg2 = t50 * t46;
-        let g1_wz_leg2 = g1_vx_leg2 * t58 - minus_g1_vy_leg2 * t53;
-        let t92 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t93 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t92 * t93;
-        let t95 = t56 - t57;
-        let t98 = t52 + t51;
-        let t99 = t98 * twist[2];
-        let t101 = acceleration[0] - t95 * acceleration[2] - twist[2] * t99;
-        let t105 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t108 = t95 * twist[2];
-        let t110 = acceleration[1] + t98 * acceleration[2] - twist[2] * t108;
-        let g2_vy_leg3 = 1.4705882352941178 * t93;
-        let t114 = twist[1] + t99;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t93;
-        let t117 = twist[0] - t108;
-        let rate_2_leg3 = g2_vy_leg3 * t114 - minus_g2_vx_leg3 * t117;
-        let t120 = rate_2_leg3 * rate_2_leg3;
-        let t122 = t92 * t101 - t105 * t110 + 0.34 * t120;
-        let rate_dot_1_leg3 = t93 * t122;
-        let minus_g1_vy_leg3 = t105 * t93;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t98 + g1_vx_leg3 * t95;
-        let rate_1_leg1 = g1_vy_leg1 * t31 - (twist[0] - t3);
-        let rate_1_leg2 = g1_vx_leg2 * t71 - minus_g1_vy_leg2 * t74;
-        let rate_1_leg3 = g1_vx_leg3 * t117 - minus_g1_vy_leg3 * t114;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t27 + 0.34 * c2_leg1 * t33);
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t24);
-        let t170 = 0.8660254037844386 * t67 + 0.5 * t61;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t46
-            * (t77 * (0.34 * c2_leg2) - t170);
-        let g2_wz_leg2 = g2_vy_leg2 * t53 + g2_vx_leg2 * t58;
-        let t182 = 0.5 * t110 - 0.8660254037844386 * t101;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t93
-            * (t182 - t120 * (0.34 * c2_leg3));
-        let g2_wz_leg3 = g2_vy_leg3 * t98 + minus_g2_vx_leg3 * t95;
-        let t193 = 2.9411764705882355 * t27;
-        let t201 = 2.9411764705882355 * t170;
-        let t211 = 2.9411764705882355 * t182;
-        let t228 = minus_rate_2_leg1 + twist[2];
-        let t232 = twist[2] - rate_2_leg2;
-        let t237 = twist[2] - rate_2_leg3;
+        let t43 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
+        let t44 = 1.0 / s2_leg2;
+        let g1_vx_leg2 = t43 * t44;
+        let t48 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
+        let t49 = 0.04 * s_phi;
+        let t50 = 0.06928203230275509 * c_phi;
+        let t51 = t49 - t50;
+        let t54 = 0.06928203230275509 * s_phi;
+        let t55 = 0.04 * c_phi;
+        let t56 = t54 + t55;
+        let t57 = t56 * twist[2];
+        let t59 = acceleration[1] + t51 * acceleration[2] + twist[2] * t57;
+        let t63 = t51 * twist[2];
+        let t65 = acceleration[0] + t56 * acceleration[2] - twist[2] * t63;
+        let g2_vx_leg2 = 2.5471335405424664 * t44;
+        let t69 = twist[0] + t57;
+        let g2_vy_leg2 = 1.4705882352941178 * t44;
+        let t72 = twist[1] + t63;
+        let rate_2_leg2 = g2_vx_leg2 * t69 + g2_vy_leg2 * t72;
+        let t76 = 0.34 * (rate_2_leg2 * rate_2_leg2);
+        let t77 = t48 * t59 - t43 * t65 - t76;
+        let minus_rate_dot_1_leg2 = t44 * t77;
+        let minus_g1_vy_leg2 = t48 * t44;
+        let g1_wz_leg2 = g1_vx_leg2 * t56 - minus_g1_vy_leg2 * t51;
+        let t90 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
+        let t91 = 1.0 / s2_leg3;
+        let g1_vx_leg3 = t90 * t91;
+        let t93 = t54 - t55;
+        let t96 = t50 + t49;
+        let t97 = t96 * twist[2];
+        let t99 = acceleration[0] - t93 * acceleration[2] - twist[2] * t97;
+        let t103 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
+        let t106 = t93 * twist[2];
+        let t108 = acceleration[1] + t96 * acceleration[2] - twist[2] * t106;
+        let g2_vy_leg3 = 1.4705882352941178 * t91;
+        let t112 = twist[1] + t97;
+        let minus_g2_vx_leg3 = 2.5471335405424664 * t91;
+        let t115 = twist[0] - t106;
+        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t115;
+        let t119 = 0.34 * (rate_2_leg3 * rate_2_leg3);
+        let t120 = t90 * t99 - t103 * t108 + t119;
+        let rate_dot_1_leg3 = t91 * t120;
+        let minus_g1_vy_leg3 = t103 * t91;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t96 + g1_vx_leg3 * t93;
+        let t129 = g1_vy_leg1 * t29;
+        let rate_1_leg1 = t129 - (twist[0] - t3);
+        let rate_1_leg2 = g1_vx_leg2 * t69 - minus_g1_vy_leg2 * t72;
+        let rate_1_leg3 = g1_vx_leg3 * t115 - minus_g1_vy_leg3 * t112;
+        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t25 + minus_rate_2_leg1 * t129);
+        let g2_wz_leg1 = t5 * minus_g2_vy_leg1;
+        let t161 = 2.9411764705882355 * t44;
+        let t165 = 0.8660254037844386 * t65 + 0.5 * t59;
+        let minus_rate_dot_2_leg2 = t161 * (c2_leg2 * t76 - t165);
+        let g2_wz_leg2 = t5 * t161;
+        let t172 = 2.9411764705882355 * t91;
+        let t175 = 0.5 * t108 - 0.8660254037844386 * t99;
+        let rate_dot_2_leg3 = t172 * (t175 - c2_leg3 * t119);
+        let g2_wz_leg3 = t5 * t172;
+        let t183 = 2.9411764705882355 * t25;
+        let t191 = 2.9411764705882355 * t165;
+        let t201 = 2.9411764705882355 * t175;
+        let t218 = minus_rate_2_leg1 + twist[2];
+        let t222 = twist[2] - rate_2_leg2;
+        let t227 = twist[2] - rate_2_leg3;
         Ok([
             [
-                0.0, -t8, -t13, acceleration[0], minus_rate_dot_1_leg1,
+                0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3, -rate_1_leg1,
                 g1_vx_leg2 * rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
                 -::overact::math::sign(rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -1.0, g1_vx_leg2, g1_vx_leg3, 0.0,
-                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(minus_g2_vx_leg3 * rate_dot_2_leg3), -t193,
-                g2_vx_leg2 * t79 - g1_vx_leg2 * t201, minus_g2_vx_leg3 * t122 - g1_vx_leg3 * t211,
+                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(minus_g2_vx_leg3 * rate_dot_2_leg3), -t183,
+                g2_vx_leg2 * t77 - g1_vx_leg2 * t191, minus_g2_vx_leg3 * t120 - g1_vx_leg3 * t201,
                 0.0, ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
                 -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3), 0.0,
-                -::overact::math::signed(g2_vx_leg2, t232),
-                ::overact::math::signed(minus_g2_vx_leg3, t237),
+                -::overact::math::signed(g2_vx_leg2, t222),
+                ::overact::math::signed(minus_g2_vx_leg3, t227),
             ],
             [
-                0.0, t13, -t8, acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
+                0.0, -t13, -t8, acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
                 g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
                 -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
@@ -2711,19 +2658,19 @@ impl Planar3Prr {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                2.9411764705882355 * (t28 - minus_rate_dot_1_leg1),
-                minus_g1_vy_leg2 * t201 + 1.4705882352941178 * minus_rate_dot_1_leg2,
-                minus_g1_vy_leg3 * t211 - 1.4705882352941178 * rate_dot_1_leg3,
+                2.9411764705882355 * (t26 - minus_rate_dot_1_leg1),
+                minus_g1_vy_leg2 * t191 + 1.4705882352941178 * minus_rate_dot_1_leg2,
+                minus_g1_vy_leg3 * t201 - 1.4705882352941178 * rate_dot_1_leg3,
                 ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
                 ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
                 ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg1, t228),
-                -::overact::math::signed(g2_vy_leg2, t232),
-                -::overact::math::signed(g2_vy_leg3, t237),
+                ::overact::math::signed(minus_g2_vy_leg1, t218),
+                -::overact::math::signed(g2_vy_leg2, t222),
+                -::overact::math::signed(g2_vy_leg3, t227),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 -(g1_wz_leg1 * minus_rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 -(minus_g1_wz_leg3 * rate_dot_1_leg3), g1_wz_leg1 * rate_1_leg1,
                 g1_wz_leg2 * rate_1_leg2, -(minus_g1_wz_leg3 * rate_1_leg3),
@@ -2732,14 +2679,14 @@ impl Planar3Prr {
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), g1_wz_leg1, g1_wz_leg2,
                 -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                g1_wz_leg1 * t193 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1),
-                g2_wz_leg2 * t79 - g1_wz_leg2 * t201, minus_g1_wz_leg3 * t211 - g2_wz_leg3 * t122,
+                g1_wz_leg1 * t183 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1),
+                g2_wz_leg2 * t77 - g1_wz_leg2 * t191, minus_g1_wz_leg3 * t201 - g2_wz_leg3 * t120,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t228),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t232),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t237),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t218),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t222),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t227),
             ],
         ])
     }
@@ -2754,7 +2701,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 349 operations (130 additions, 213 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 306 intermediates.
+    /// 307 operations (113 additions, 188 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 264 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2769,209 +2716,201 @@ impl Planar3Prr {
         let t2 = 0.08 * s_phi;
         let t3 = 0.08 * c_phi;
         let t5 = pose[1] + t3 - 0.3;
-        let t6 = pose[0] - t2;
-        let t7 = t6 * t6;
-        let t12 = 8.650519031141869 * (t7 - (t7 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t12, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        let t8 = 8.650519031141869 * (0.1156 - t5 * t5);
+        ::overact::guard::reach(t8, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t8);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t14 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let t10 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t10;
         let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
-        let t22 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t24 = pose[0] + t22 + 0.25980762113533157;
-        let t28 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t30 = pose[1] - t28 + 0.15;
-        let t32 = 0.5 * t24 - 0.8660254037844386 * t30;
-        let t39 = 8.650519031141869 * (t32 * t32 - (t24 * t24 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t44 = 0.8660254037844386 * t24 + 0.5 * t30;
-        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t44;
-        let t47 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t46 * t47;
-        let t52 = 2.5471335405424664 * t44 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t52 * t47;
-        let minus_g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t61 = 0.08 * minus_c23_leg2;
-        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let t19 = 0.08 * minus_c23_leg2;
+        let t20 = t2 - t19;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t68 = 0.08 * minus_s23_leg2;
-        let t70 = pose[1] + t68 + 0.15;
-        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
-        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
-        ::overact::guard::reach(t79, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        let t27 = 0.08 * minus_s23_leg2;
+        let t28 = t3 + t27;
+        let t29 = pose[1] + 0.15;
+        let t32 = 0.8660254037844386 * (pose[0] + t20 + 0.25980762113533157)
+            + 0.5 * (t29 - t28);
+        let t35 = 8.650519031141869 * (0.1156 - t32 * t32);
+        ::overact::guard::reach(t35, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t35);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t37 = 1.0 / minus_s2_leg2;
+        let t38 = 2.9411764705882355 * t37;
+        let minus_g2_wz_leg2 = t2 * t38;
+        let minus_g1_wz_leg2 = t32 * minus_g2_wz_leg2 - t3;
+        let t49 = 0.8660254037844386 * (pose[0] + t19 + -0.25980762113533157)
+            - 0.5 * (t27 + t29);
+        let t52 = 8.650519031141869 * (0.1156 - t49 * t49);
+        ::overact::guard::reach(t52, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t52);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
-        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
-        let t87 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = t86 * t87;
-        let t92 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t92 * t87;
-        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
-        let t101 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t54 = 1.0 / minus_s2_leg3;
+        let t55 = 2.9411764705882355 * t54;
+        let minus_g2_wz_leg3 = t2 * t55;
+        let g1_wz_leg3 = t3 + t49 * minus_g2_wz_leg3;
+        let t63 = 2.5471335405424664 * t32 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t63 * t37;
+        let t69 = 2.5471335405424664 * t49 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t69 * t54;
+        let t72 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t105 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t76 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t107 = t101 * t106;
-        let t118 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t76, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t76, 2.5803571428571423, "actuators")?;
+        let t77 = 1.0 / t76;
+        let t78 = t72 * t77;
+        let t83 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t32;
+        let minus_g1_vy_leg2 = t83 * t37;
+        let t90 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t49;
+        let g1_vy_leg3 = t90 * t54;
+        let t97 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t120 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t118 * t107;
-        let t126 = t118 * t106;
-        let t128 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t118 * t126;
-        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = t120 * t129;
-        let t132 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t101 * t107 - t120 * t130;
-        ::overact::guard::platform(t132, 0.0192, "actuators")?;
-        ::overact::guard::platform(t132, 0.0192, "actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = g1_wz_leg1 * actuator_velocities[0];
-        let t135 = minus_g1_wz_leg2 * actuator_velocities[1];
-        let t137 = g1_wz_leg3 * actuator_velocities[2];
-        let t139 = minus_g1_vx_leg2 * actuator_velocities[1];
-        let t141 = minus_g1_vx_leg3 * actuator_velocities[2];
-        let t142 = actuator_velocities[0] + t139 + t141;
-        let t145 = g1_vy_leg3 * actuator_velocities[2];
-        let t146 = minus_g1_vy_leg1 * actuator_velocities[0];
-        let t147 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t151 = t145 - (t146 + t147) + t142 * t126;
-        let rate_3_leg1 = t133 * (t134 - t135 + t137 + t142 * t107 - t130 * t151);
-        let t155 = t2 * rate_3_leg1;
-        let t156 = rate_3_leg1 * t155;
-        let t158 = rate_3_leg1 * (t3 * rate_3_leg1);
-        let t163 = t129 * t151 - t130 * rate_3_leg1;
-        let rate_2_leg1 = g2_vy_leg1 * (t163 - t155);
-        let t166 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t156 - minus_g1_vy_leg1 * t158 + t166 * (0.34 * t14);
-        let t170 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t172 = t22 * rate_3_leg1;
-        let t173 = rate_3_leg1 * t172;
-        let t175 = t28 * rate_3_leg1;
-        let t176 = rate_3_leg1 * t175;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
-        let t184 = t142 * t106 + t126 * t163 + t107 * rate_3_leg1;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t175 - t184)
-            + minus_g2_vy_leg2 * (t163 + t172);
-        let t191 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t192 = 0.34 * t191;
-        let rate_dot_1_leg2 = t47 * (t52 * t173 - t46 * t176 - t192);
-        let t195 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t198 = t68 * rate_3_leg1;
-        let t199 = rate_3_leg1 * t198;
-        let t201 = t61 * rate_3_leg1;
-        let t202 = rate_3_leg1 * t201;
-        let g2_vx_leg3 = 2.5471335405424664 * t87;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t184 + t198)
-            + minus_g2_vy_leg3 * (t163 + t201);
-        let t212 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t213 = 0.34 * t212;
-        let minus_rate_dot_1_leg3 = t87 * (t86 * t199 - t92 * t202 + t213);
-        let t216 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t222 = t170 + minus_g1_vx_leg2 * t195 + minus_g1_vx_leg3 * t216;
-        let t231 = g1_vy_leg3 * t216
-            - (minus_g1_vy_leg1 * t170 + minus_g1_vy_leg2 * t195) + t126 * t222;
-        let rate_dot_3_leg1 = t133
-            * (g1_wz_leg1 * t170 - minus_g1_wz_leg2 * t195 + g1_wz_leg3 * t216
-                + t107 * t222 - t130 * t231);
-        let t235 = t2 * rate_dot_3_leg1;
-        let t237 = 12.5 * (t158 + t235);
-        let t240 = 12.5 * (t3 * rate_dot_3_leg1 - t156);
-        let t244 = t129 * t231 - t130 * rate_dot_3_leg1;
-        let t248 = t106 * t222 + t126 * t244 + t107 * rate_dot_3_leg1;
-        let t273 = t244 - t235 - t158;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t273 + t5 * t166);
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
-        let t284 = t28 * rate_dot_3_leg1 - t248 - t173;
-        let t288 = t244 + t22 * rate_dot_3_leg1 + t176;
-        let t290 = 0.8660254037844386 * t284 + 0.5 * t288;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47 * (t290 + t44 * t191);
-        let minus_g2_wz_leg2 = t22 * minus_g2_vy_leg2 + t28 * minus_g2_vx_leg2;
-        let t303 = t248 + t68 * rate_dot_3_leg1 + t202;
-        let t307 = t244 + t61 * rate_dot_3_leg1 - t199;
-        let t309 = 0.8660254037844386 * t303 + 0.5 * t307;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87 * (t309 - t84 * t212);
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
-            + 0.2037706832433973 * (minus_s23_leg2 * t87);
-        let t321 = 2.9411764705882355 * t273;
-        let t329 = 2.9411764705882355 * t290;
-        let t334 = t52 * t284 + t46 * t288 + t192;
-        let t343 = 2.9411764705882355 * t309;
-        let t348 = t213 - (t92 * t303 + t86 * t307);
-        let t365 = rate_3_leg1 - rate_2_leg1;
-        let t369 = minus_rate_2_leg2 + rate_3_leg1;
-        let t374 = minus_rate_2_leg3 + rate_3_leg1;
+        let t99 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t97 * t78;
+        let t105 = t97 * t77;
+        let t107 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t97 * t105;
+        ::overact::guard::platform(t107, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t107, 2.580357142857142, "actuators")?;
+        let t108 = 1.0 / t107;
+        let t109 = t99 * t108;
+        let t111 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t72 * t78 - t99 * t109;
+        ::overact::guard::platform(t111, 0.0192, "actuators")?;
+        ::overact::guard::platform(t111, 0.0192, "actuators")?;
+        let t112 = 1.0 / t111;
+        let t113 = g1_wz_leg1 * actuator_velocities[0];
+        let t114 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t116 = g1_wz_leg3 * actuator_velocities[2];
+        let t118 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t120 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t121 = actuator_velocities[0] + t118 + t120;
+        let t124 = g1_vy_leg3 * actuator_velocities[2];
+        let t125 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t126 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t130 = t124 - (t125 + t126) + t121 * t105;
+        let rate_3_leg1 = t112 * (t113 - t114 + t116 + t121 * t78 - t109 * t130);
+        let t134 = t2 * rate_3_leg1;
+        let t135 = rate_3_leg1 * t134;
+        let t136 = t28 * rate_3_leg1;
+        let t137 = rate_3_leg1 * t136;
+        let t138 = t27 * rate_3_leg1;
+        let t139 = rate_3_leg1 * t138;
+        let t140 = t137 - t139;
+        let t145 = t108 * t130 - t109 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t145 - t134);
+        let t148 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t135 - minus_g1_vy_leg1 * t140 + t148 * (0.34 * t10);
+        let t152 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t154 = t20 * rate_3_leg1;
+        let t155 = rate_3_leg1 * t154;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t37;
+        let t164 = t121 * t77 + t105 * t145 + t78 * rate_3_leg1;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t37;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t136 - t164)
+            + minus_g2_vy_leg2 * (t145 + t154);
+        let t171 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t37 * (t63 * t155 - t83 * t137 - 0.34 * t171);
+        let t175 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t179 = t19 * rate_3_leg1;
+        let t180 = rate_3_leg1 * t179;
+        let g2_vx_leg3 = 2.5471335405424664 * t54;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t54;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t164 + t138)
+            + minus_g2_vy_leg3 * (t145 + t179);
+        let t190 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t54 * (t90 * t139 - t69 * t180 + 0.34 * t190);
+        let t194 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t200 = t152 + minus_g1_vx_leg2 * t175 + minus_g1_vx_leg3 * t194;
+        let t209 = g1_vy_leg3 * t194
+            - (minus_g1_vy_leg1 * t152 + minus_g1_vy_leg2 * t175) + t105 * t200;
+        let rate_dot_3_leg1 = t112
+            * (g1_wz_leg1 * t152 - minus_g1_wz_leg2 * t175 + g1_wz_leg3 * t194
+                + t78 * t200 - t109 * t209);
+        let t214 = t140 + t2 * rate_dot_3_leg1;
+        let t215 = 12.5 * t214;
+        let t217 = t135 - t3 * rate_dot_3_leg1;
+        let t218 = 12.5 * t217;
+        let t221 = t108 * t209 - t109 * rate_dot_3_leg1;
+        let t227 = t77 * t200 + t105 * t221 + t78 * rate_dot_3_leg1;
+        let t250 = t221 - t214;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t250 + t5 * t148);
+        let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
+        let t264 = 0.5 * (t221 + t20 * rate_dot_3_leg1 + t137);
+        let t265 = 0.8660254037844386 * (t28 * rate_dot_3_leg1 - t227 - t155) + t264;
+        let minus_rate_dot_2_leg2 = t38 * (t265 + t32 * t171);
+        let t278 = 0.8660254037844386 * (t227 + t27 * rate_dot_3_leg1 + t180) + t264
+            - 0.8660254037844386 * t217;
+        let minus_rate_dot_2_leg3 = t55 * (t278 - t49 * t190);
+        let t285 = 2.9411764705882355 * t250;
+        let t293 = 2.9411764705882355 * t265;
+        let t295 = minus_s2_leg2 * actuator_accelerations[1];
+        let t304 = 2.9411764705882355 * t278;
+        let t306 = minus_s2_leg3 * actuator_accelerations[2];
+        let t323 = rate_3_leg1 - rate_2_leg1;
+        let t327 = minus_rate_2_leg2 + rate_3_leg1;
+        let t332 = minus_rate_2_leg3 + rate_3_leg1;
         Ok([
             [
-                0.0, -t237, -t240, -t248, -actuator_accelerations[0],
+                0.0, -t215, t218, -t227, -actuator_accelerations[0],
                 -(minus_g1_vx_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t139,
-                -t141, -::overact::math::sign(actuator_velocities[0]),
+                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t118,
+                -t120, -::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]), -1.0,
                 -minus_g1_vx_leg2, -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t321,
-                minus_g1_vx_leg2 * t329 + minus_g2_vx_leg2 * t334,
-                minus_g1_vx_leg3 * t343 - g2_vx_leg3 * t348, 0.0,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t285,
+                minus_g1_vx_leg2 * t293 - minus_g2_vx_leg2 * t295,
+                minus_g1_vx_leg3 * t304 + g2_vx_leg3 * t306, 0.0,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3), 0.0,
-                ::overact::math::signed(minus_g2_vx_leg2, t369),
-                -::overact::math::signed(g2_vx_leg3, t374),
+                ::overact::math::signed(minus_g2_vx_leg2, t327),
+                -::overact::math::signed(g2_vx_leg3, t332),
             ],
             [
-                0.0, t240, -t237, t244, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
+                0.0, -t218, -t215, t221, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                g1_vy_leg3 * actuator_accelerations[2], -t146, -t147, t145,
+                g1_vy_leg3 * actuator_accelerations[2], -t125, -t126, t124,
                 -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), -minus_g1_vy_leg1,
                 -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 2.9411764705882355
-                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t273),
-                minus_g1_vy_leg2 * t329 - 1.4705882352941178 * actuator_accelerations[1],
-                -(g1_vy_leg3 * t343 + 1.4705882352941178 * actuator_accelerations[2]),
+                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t250),
+                minus_g1_vy_leg2 * t293 - 1.4705882352941178 * actuator_accelerations[1],
+                -(g1_vy_leg3 * t304 + 1.4705882352941178 * actuator_accelerations[2]),
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg1, t365),
-                ::overact::math::signed(minus_g2_vy_leg2, t369),
-                ::overact::math::signed(minus_g2_vy_leg3, t374),
+                -::overact::math::signed(g2_vy_leg1, t323),
+                ::overact::math::signed(minus_g2_vy_leg2, t327),
+                ::overact::math::signed(minus_g2_vy_leg3, t332),
             ],
             [
-                rate_dot_3_leg1, s_phi * t248 + c_phi * t244, -(s_phi * t244 - c_phi * t248), 0.0,
+                rate_dot_3_leg1, c_phi * t221 + s_phi * t227, c_phi * t227 - s_phi * t221, 0.0,
                 g1_wz_leg1 * actuator_accelerations[0],
                 -(minus_g1_wz_leg2 * actuator_accelerations[1]),
-                g1_wz_leg3 * actuator_accelerations[2], t134, -t135, t137,
+                g1_wz_leg3 * actuator_accelerations[2], t113, -t114, t116,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
                 -minus_g1_wz_leg2, g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg1 * t321
+                g1_wz_leg1 * t285
                     - minus_g2_wz_leg1 * (minus_s2_leg1 * actuator_accelerations[0]),
-                minus_g1_wz_leg2 * t329 + minus_g2_wz_leg2 * t334,
-                minus_g2_wz_leg3 * t348 - g1_wz_leg3 * t343,
+                minus_g1_wz_leg2 * t293 - minus_g2_wz_leg2 * t295,
+                -(minus_g2_wz_leg3 * t306 + g1_wz_leg3 * t304),
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t365),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t369),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t374),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t323),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t327),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t332),
             ],
         ])
     }
@@ -2985,7 +2924,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 356 operations (131 additions, 221 multiplications, 4 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 325 intermediates.
+    /// 339 operations (124 additions, 211 multiplications, 4 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 308 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2995,185 +2934,182 @@ impl Planar3Prr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t21 = 8.650519031141869 * (t14 * t14 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t21, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t21);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t26 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t28 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t26;
-        let t29 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t28 * t29;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t34 = 0.08 * minus_c23_leg2;
-        let t36 = pose[0] + t34 - 0.25980762113533157;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t6 = 0.08 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t41 = 0.08 * minus_s23_leg2;
-        let t43 = pose[1] + t41 + 0.15;
-        let t45 = 0.8660254037844386 * t36 - 0.5 * t43;
-        let t49 = 0.5 * t36 + 0.8660254037844386 * t43;
-        let t56 = 8.650519031141869 * (t49 * t49 - (t36 * t36 + t43 * t43 - 0.1156));
-        ::overact::guard::reach(t56, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t56);
+        let t14 = 0.08 * minus_s23_leg2;
+        let t15 = 0.08 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t27 = 8.650519031141869 * (t20 * t20 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t27, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t27);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t32 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t34 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t32;
+        let t35 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t34 * t35;
+        let t38 = pose[0] + t5 - 0.25980762113533157;
+        let t41 = pose[1] + t14 + 0.15;
+        let t43 = 0.8660254037844386 * t38 - 0.5 * t41;
+        let t47 = 0.5 * t38 + 0.8660254037844386 * t41;
+        let t54 = 8.650519031141869 * (t47 * t47 - (t38 * t38 + t41 * t41 - 0.1156));
+        ::overact::guard::reach(t54, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t54);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t59 = 2.5471335405424664 * t45 - 0.5 * minus_s2_leg3;
-        let t60 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t59 * t60;
-        let t65 = 2.5471335405424664 * t26 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t65 * t29;
-        let t69 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45;
-        let g1_vy_leg3 = t69 * t60;
-        let t73 = 0.08 * s_phi;
-        let t74 = 0.08 * c_phi;
-        let t76 = pose[1] + t74 - 0.3;
-        let t77 = pose[0] - t73;
-        let t78 = t77 * t77;
-        let t83 = 8.650519031141869 * (t78 - (t78 + t76 * t76 - 0.1156));
-        ::overact::guard::reach(t83, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t83);
+        let t57 = 2.5471335405424664 * t43 - 0.5 * minus_s2_leg3;
+        let t58 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t57 * t58;
+        let t63 = 2.5471335405424664 * t32 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t63 * t35;
+        let t67 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t43;
+        let g1_vy_leg3 = t67 * t58;
+        let t72 = pose[1] + t15 - 0.3;
+        let t75 = 8.650519031141869 * (0.1156 - t72 * t72);
+        ::overact::guard::reach(t75, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t75);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t85 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t85;
-        let minus_g1_vy_leg1 = t76 * g2_vy_leg1;
-        let g1_wz_leg1 = t73 * minus_g1_vy_leg1 + t74;
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let t95 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
-        let t98 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
-        let g1_wz_leg3 = t34 * g1_vy_leg3 + t41 * minus_g1_vx_leg3;
-        let t105 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
-        let t107 = minus_g1_vx_leg3 * t95 + g1_vy_leg3 * t98 + g1_wz_leg3 * t105;
-        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
-        let t108 = 1.0 / t107;
-        let t109 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
-            * t108;
-        let t113 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t108;
-        let t115 = t105 * t108;
-        let t119 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t124 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
-            * t108;
-        let t125 = t74 * twist[2];
-        let t126 = twist[2] * t125;
-        let t127 = t73 * acceleration[2];
-        let t129 = 12.5 * (t126 + t127);
-        let t134 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
-            * t108;
-        let t135 = t74 * acceleration[2];
-        let t136 = t73 * twist[2];
-        let t137 = twist[2] * t136;
-        let t139 = 12.5 * (t135 - t137);
-        let t146 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t108;
-        let t150 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t108;
-        let t155 = t95 * t108;
-        let t157 = t98 * t108;
-        let t167 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t192 = acceleration[1] - t127 - t126;
-        let t195 = twist[1] - t136;
-        let rate_2_leg1 = g2_vy_leg1 * t195;
-        let t197 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t135 + t137
-            + minus_g1_vy_leg1 * t192 + t197 * (0.34 * t85);
-        let t203 = t4 * twist[2];
-        let t205 = acceleration[0] + t10 * acceleration[2] - twist[2] * t203;
-        let t209 = t10 * twist[2];
-        let t211 = acceleration[1] + t4 * acceleration[2] + twist[2] * t209;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t29;
-        let t215 = twist[0] + t209;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t29;
-        let t218 = twist[1] + t203;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t215 + minus_g2_vy_leg2 * t218;
-        let t221 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t223 = t65 * t205 + t28 * t211 + 0.34 * t221;
-        let minus_rate_dot_1_leg2 = t29 * t223;
-        let t227 = t34 * twist[2];
-        let t229 = acceleration[0] - t41 * acceleration[2] - twist[2] * t227;
-        let t233 = t41 * twist[2];
-        let t235 = acceleration[1] + t34 * acceleration[2] - twist[2] * t233;
-        let g2_vx_leg3 = 2.5471335405424664 * t60;
-        let t239 = twist[0] - t233;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t60;
-        let t242 = twist[1] + t227;
-        let rate_2_leg3 = g2_vx_leg3 * t239 - minus_g2_vy_leg3 * t242;
-        let t245 = rate_2_leg3 * rate_2_leg3;
-        let t247 = t59 * t229 - t69 * t235 + 0.34 * t245;
-        let minus_rate_dot_1_leg3 = t60 * t247;
-        let minus_rate_1_leg1 = twist[0] - t125 + minus_g1_vy_leg1 * t195;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t215 + minus_g1_vy_leg2 * t218;
-        let rate_1_leg3 = g1_vy_leg3 * t242 - minus_g1_vx_leg3 * t239;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t85);
-        let t265 = g2_vy_leg1 * t134 + minus_g2_wz_leg1 * t109;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t192 + t76 * t197);
-        let t272 = g2_vy_leg1 * t150 + minus_g2_wz_leg1 * t113;
-        let t276 = g2_vy_leg1 * t157 - minus_g2_wz_leg1 * t115;
-        let minus_g2_wz_leg2 = t4 * minus_g2_vy_leg2 + t10 * minus_g2_vx_leg2;
-        let t285 = minus_g2_vy_leg2 * t134 - minus_g2_vx_leg2 * t124
-            - minus_g2_wz_leg2 * t109;
-        let t289 = 0.8660254037844386 * t205 + 0.5 * t211;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t29 * (t289 + t26 * t221);
-        let t298 = minus_g2_vx_leg2 * t146 - minus_g2_vy_leg2 * t150
-            + minus_g2_wz_leg2 * t113;
-        let t304 = minus_g2_vx_leg2 * t155 - minus_g2_vy_leg2 * t157
-            - minus_g2_wz_leg2 * t115;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t60)
-            + 0.2037706832433973 * (minus_s23_leg2 * t60);
-        let t315 = g2_vx_leg3 * t124 + minus_g2_vy_leg3 * t134 - minus_g2_wz_leg3 * t109;
-        let t319 = 0.5 * t235 - 0.8660254037844386 * t229;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t60 * (t319 - t45 * t245);
-        let t328 = minus_g2_wz_leg3 * t113
-            - (g2_vx_leg3 * t146 + minus_g2_vy_leg3 * t150);
-        let t334 = g2_vx_leg3 * t155 + minus_g2_vy_leg3 * t157 + minus_g2_wz_leg3 * t115;
-        let t337 = minus_s2_leg1 * minus_rate_dot_1_leg1;
-        let t362 = twist[2] - rate_2_leg1;
-        let t369 = minus_rate_2_leg2 + twist[2];
-        let t376 = twist[2] - rate_2_leg3;
+        let t77 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t77;
+        let minus_g1_vy_leg1 = t72 * g2_vy_leg1;
+        let g1_wz_leg1 = t6 * minus_g1_vy_leg1 + t15;
+        let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let t87 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t90 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let g1_wz_leg3 = t5 * g1_vy_leg3 + t14 * minus_g1_vx_leg3;
+        let t97 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t99 = minus_g1_vx_leg3 * t87 + g1_vy_leg3 * t90 + g1_wz_leg3 * t97;
+        ::overact::guard::platform(t99, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.35754477384814676, "kept actuators")?;
+        let t100 = 1.0 / t99;
+        let t101 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t100;
+        let t105 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t100;
+        let t107 = t97 * t100;
+        let t112 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t100;
+        let t113 = t6 * twist[2];
+        let t116 = twist[2] * t113 - t15 * acceleration[2];
+        let t117 = 12.5 * t116;
+        let t122 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t100;
+        let t123 = t15 * twist[2];
+        let t126 = twist[2] * t123 + t6 * acceleration[2];
+        let t127 = 12.5 * t126;
+        let t132 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t138 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t100;
+        let t142 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t100;
+        let t147 = t87 * t100;
+        let t149 = t90 * t100;
+        let t159 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t182 = acceleration[1] - t126;
+        let t185 = twist[1] - t113;
+        let rate_2_leg1 = g2_vy_leg1 * t185;
+        let t187 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t116 + acceleration[0] + minus_g1_vy_leg1 * t182
+            + t187 * (0.34 * t77);
+        let t193 = t7 * twist[2];
+        let t195 = acceleration[0] + t16 * acceleration[2] - twist[2] * t193;
+        let t199 = t16 * twist[2];
+        let t201 = acceleration[1] + t7 * acceleration[2] + twist[2] * t199;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t35;
+        let t205 = twist[0] + t199;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t35;
+        let t208 = twist[1] + t193;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t205 + minus_g2_vy_leg2 * t208;
+        let t211 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t213 = t63 * t195 + t34 * t201 + 0.34 * t211;
+        let minus_rate_dot_1_leg2 = t35 * t213;
+        let t217 = t5 * twist[2];
+        let t219 = acceleration[0] - t14 * acceleration[2] - twist[2] * t217;
+        let t223 = t14 * twist[2];
+        let t225 = acceleration[1] + t5 * acceleration[2] - twist[2] * t223;
+        let g2_vx_leg3 = 2.5471335405424664 * t58;
+        let t229 = twist[0] - t223;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t58;
+        let t232 = twist[1] + t217;
+        let rate_2_leg3 = g2_vx_leg3 * t229 - minus_g2_vy_leg3 * t232;
+        let t235 = rate_2_leg3 * rate_2_leg3;
+        let t237 = t57 * t219 - t67 * t225 + 0.34 * t235;
+        let minus_rate_dot_1_leg3 = t58 * t237;
+        let minus_rate_1_leg1 = twist[0] - t123 + minus_g1_vy_leg1 * t185;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t205 + minus_g1_vy_leg2 * t208;
+        let rate_1_leg3 = g1_vy_leg3 * t232 - minus_g1_vx_leg3 * t229;
+        let minus_g2_wz_leg1 = t6 * g2_vy_leg1;
+        let t254 = g2_vy_leg1 * t112 + minus_g2_wz_leg1 * t101;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t182 + t72 * t187);
+        let t261 = g2_vy_leg1 * t142 + minus_g2_wz_leg1 * t105;
+        let t265 = g2_vy_leg1 * t149 - minus_g2_wz_leg1 * t107;
+        let t270 = 2.9411764705882355 * t35;
+        let minus_g2_wz_leg2 = t6 * t270;
+        let t273 = minus_g2_vy_leg2 * t112 - minus_g2_vx_leg2 * t122
+            - minus_g2_wz_leg2 * t101;
+        let t276 = 0.8660254037844386 * t195 + 0.5 * t201;
+        let minus_rate_dot_2_leg2 = t270 * (t276 + t32 * t211);
+        let t285 = minus_g2_vx_leg2 * t138 - minus_g2_vy_leg2 * t142
+            + minus_g2_wz_leg2 * t105;
+        let t291 = minus_g2_vx_leg2 * t147 - minus_g2_vy_leg2 * t149
+            - minus_g2_wz_leg2 * t107;
+        let t296 = 2.9411764705882355 * t58;
+        let minus_g2_wz_leg3 = t6 * t296;
+        let t299 = g2_vx_leg3 * t122 + minus_g2_vy_leg3 * t112 - minus_g2_wz_leg3 * t101;
+        let t302 = 0.5 * t225 - 0.8660254037844386 * t219;
+        let minus_rate_dot_2_leg3 = t296 * (t302 - t43 * t235);
+        let t311 = minus_g2_wz_leg3 * t105
+            - (g2_vx_leg3 * t138 + minus_g2_vy_leg3 * t142);
+        let t317 = g2_vx_leg3 * t147 + minus_g2_vy_leg3 * t149 + minus_g2_wz_leg3 * t107;
+        let t320 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t345 = twist[2] - rate_2_leg1;
+        let t352 = minus_rate_2_leg2 + twist[2];
+        let t359 = twist[2] - rate_2_leg3;
         Ok([
             [
-                t109 * acceleration[2], t109 * t119 - (t124 * t129 + t134 * t139),
-                t134 * t129 - t124 * t139 - t109 * t167,
-                t124 * acceleration[0] - t134 * acceleration[1], -minus_rate_dot_1_leg1, 0.0, 0.0,
+                t101 * acceleration[2], t112 * t117 - t122 * t127 + t101 * t132,
+                t122 * t117 + t112 * t127 - t101 * t159,
+                t122 * acceleration[0] - t112 * acceleration[1], -minus_rate_dot_1_leg1, 0.0, 0.0,
                 -minus_rate_1_leg1, 0.0, 0.0, -::overact::math::sign(minus_rate_1_leg1), 0.0, 0.0,
-                1.0, 0.0, 0.0, -(t265 * rate_dot_2_leg1), -(t285 * minus_rate_dot_2_leg2),
-                -(t315 * minus_rate_dot_2_leg3), 2.9411764705882355 * t192 + t265 * t337,
-                -(t285 * t223), -(t315 * t247), -::overact::math::signed(t265, rate_2_leg1),
-                -::overact::math::signed(t285, minus_rate_2_leg2),
-                ::overact::math::signed(t315, rate_2_leg3),
-                ::overact::math::signed(t265 + t109, t362),
-                ::overact::math::signed(t109 - t285, t369),
-                ::overact::math::signed(t109 - t315, t376),
+                1.0, 0.0, 0.0, -(t254 * rate_dot_2_leg1), -(t273 * minus_rate_dot_2_leg2),
+                -(t299 * minus_rate_dot_2_leg3), 2.9411764705882355 * t182 + t254 * t320,
+                -(t273 * t213), -(t299 * t237), -::overact::math::signed(t254, rate_2_leg1),
+                -::overact::math::signed(t273, minus_rate_2_leg2),
+                ::overact::math::signed(t299, rate_2_leg3),
+                ::overact::math::signed(t254 + t101, t345),
+                ::overact::math::signed(t101 - t273, t352),
+                ::overact::math::signed(t101 - t299, t359),
             ],
             [
-                -(t113 * acceleration[2]), t146 * t129 + t150 * t139 - t113 * t119,
-                t146 * t139 - t150 * t129 + t113 * t167,
-                t150 * acceleration[1] - t146 * acceleration[0], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                -(t105 * acceleration[2]), t138 * t127 - t142 * t117 - t105 * t132,
+                t105 * t159 - (t138 * t117 + t142 * t127),
+                t142 * acceleration[1] - t138 * acceleration[0], 0.0, -minus_rate_dot_1_leg2, 0.0,
                 0.0, -minus_rate_1_leg2, 0.0, 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                0.0, 1.0, 0.0, t272 * rate_dot_2_leg1, -(t298 * minus_rate_dot_2_leg2),
-                -(t328 * minus_rate_dot_2_leg3), -(t272 * t337),
-                -(2.9411764705882355 * t289 + t298 * t223), -(t328 * t247),
-                ::overact::math::signed(t272, rate_2_leg1),
-                -::overact::math::signed(t298, minus_rate_2_leg2),
-                ::overact::math::signed(t328, rate_2_leg3),
-                -::overact::math::signed(t272 + t113, t362),
-                -::overact::math::signed(t298 + t113, t369),
-                -::overact::math::signed(t328 + t113, t376),
+                0.0, 1.0, 0.0, t261 * rate_dot_2_leg1, -(t285 * minus_rate_dot_2_leg2),
+                -(t311 * minus_rate_dot_2_leg3), -(t261 * t320),
+                -(2.9411764705882355 * t276 + t285 * t213), -(t311 * t237),
+                ::overact::math::signed(t261, rate_2_leg1),
+                -::overact::math::signed(t285, minus_rate_2_leg2),
+                ::overact::math::signed(t311, rate_2_leg3),
+                -::overact::math::signed(t261 + t105, t345),
+                -::overact::math::signed(t285 + t105, t352),
+                -::overact::math::signed(t311 + t105, t359),
             ],
             [
-                t115 * acceleration[2], t155 * t129 + t157 * t139 + t115 * t119,
-                t155 * t139 - t157 * t129 - t115 * t167,
-                t157 * acceleration[1] - t155 * acceleration[0], 0.0, 0.0, -minus_rate_dot_1_leg3,
+                t107 * acceleration[2], t147 * t127 - t149 * t117 + t107 * t132,
+                -(t147 * t117 + t149 * t127 + t107 * t159),
+                t149 * acceleration[1] - t147 * acceleration[0], 0.0, 0.0, -minus_rate_dot_1_leg3,
                 0.0, 0.0, rate_1_leg3, 0.0, 0.0, ::overact::math::sign(rate_1_leg3), 0.0, 0.0, 1.0,
-                t276 * rate_dot_2_leg1, -(t304 * minus_rate_dot_2_leg2),
-                t334 * minus_rate_dot_2_leg3, -(t276 * t337), -(t304 * t223),
-                t334 * t247 - 2.9411764705882355 * t319, ::overact::math::signed(t276, rate_2_leg1),
-                -::overact::math::signed(t304, minus_rate_2_leg2),
-                -::overact::math::signed(t334, rate_2_leg3),
-                ::overact::math::signed(t115 - t276, t362),
-                ::overact::math::signed(t115 - t304, t369),
-                ::overact::math::signed(t334 + t115, t376),
+                t265 * rate_dot_2_leg1, -(t291 * minus_rate_dot_2_leg2),
+                t317 * minus_rate_dot_2_leg3, -(t265 * t320), -(t291 * t213),
+                t317 * t237 - 2.9411764705882355 * t302, ::overact::math::signed(t265, rate_2_leg1),
+                -::overact::math::signed(t291, minus_rate_2_leg2),
+                -::overact::math::signed(t317, rate_2_leg3),
+                ::overact::math::signed(t107 - t265, t345),
+                ::overact::math::signed(t107 - t291, t352),
+                ::overact::math::signed(t317 + t107, t359),
             ],
         ])
     }
@@ -3188,7 +3124,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 308 operations (107 additions, 197 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 280 intermediates.
+    /// 298 operations (103 additions, 191 multiplications, 4 divisions), 0 square roots, 4 trigonometric pairs, 21 signs, 270 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3242,120 +3178,118 @@ impl Planar3Prr {
         let t73 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
             * t61;
         let t74 = t27 * twist[2];
-        let t75 = twist[2] * t74;
-        let t76 = t32 * acceleration[2];
-        let t78 = 12.5 * (t75 + t76);
+        let t77 = twist[2] * t74 + t32 * acceleration[2];
+        let t78 = 12.5 * t77;
         let t83 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t61;
-        let t84 = t27 * acceleration[2];
-        let t85 = t32 * twist[2];
-        let t86 = twist[2] * t85;
-        let t88 = 12.5 * (t84 - t86);
+        let t84 = t32 * twist[2];
+        let t87 = twist[2] * t84 - t27 * acceleration[2];
+        let t88 = 12.5 * t87;
         let t93 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t99 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3) * t61;
         let t103 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_wz_leg3) * t61;
         let t108 = t49 * t61;
         let t110 = t45 * t61;
-        let t120 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t145 = acceleration[1] - t76 - t75;
+        let t120 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t143 = acceleration[1] - t77;
         let minus_g2_vy_leg1 = 2.9411764705882355 * t30;
-        let t149 = twist[1] - t85;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t149;
-        let t151 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t84 + t86 - g1_vy_leg1 * t145
-            - t151 * (0.34 * t30);
-        let t157 = t38 * twist[2];
-        let t159 = acceleration[1] + t42 * acceleration[2] + twist[2] * t157;
-        let t163 = t42 * twist[2];
-        let t165 = acceleration[0] + t38 * acceleration[2] - twist[2] * t163;
+        let t147 = twist[1] - t84;
+        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t147;
+        let minus_rate_dot_1_leg1 = t87 + acceleration[0] - g1_vy_leg1 * t143
+            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 * t30);
+        let t155 = t38 * twist[2];
+        let t157 = acceleration[1] + t42 * acceleration[2] + twist[2] * t155;
+        let t161 = t42 * twist[2];
+        let t163 = acceleration[0] + t38 * acceleration[2] - twist[2] * t161;
         let g2_vx_leg2 = 2.5471335405424664 * t5;
-        let t169 = twist[0] + t157;
+        let t167 = twist[0] + t155;
         let g2_vy_leg2 = 1.4705882352941178 * t5;
-        let t172 = twist[1] + t163;
-        let rate_2_leg2 = g2_vx_leg2 * t169 + g2_vy_leg2 * t172;
-        let t175 = rate_2_leg2 * rate_2_leg2;
-        let t177 = t17 * t159 - t4 * t165 - 0.34 * t175;
-        let minus_rate_dot_1_leg2 = t5 * t177;
-        let t181 = t52 * twist[2];
-        let t183 = acceleration[0] - t54 * acceleration[2] - twist[2] * t181;
-        let t187 = t54 * twist[2];
-        let t189 = acceleration[1] + t52 * acceleration[2] - twist[2] * t187;
+        let t170 = twist[1] + t161;
+        let rate_2_leg2 = g2_vx_leg2 * t167 + g2_vy_leg2 * t170;
+        let t174 = 0.34 * (rate_2_leg2 * rate_2_leg2);
+        let t175 = t17 * t157 - t4 * t163 - t174;
+        let minus_rate_dot_1_leg2 = t5 * t175;
+        let t179 = t52 * twist[2];
+        let t181 = acceleration[0] - t54 * acceleration[2] - twist[2] * t179;
+        let t185 = t54 * twist[2];
+        let t187 = acceleration[1] + t52 * acceleration[2] - twist[2] * t185;
         let g2_vy_leg3 = 1.4705882352941178 * t12;
-        let t193 = twist[1] + t181;
+        let t191 = twist[1] + t179;
         let minus_g2_vx_leg3 = 2.5471335405424664 * t12;
-        let t196 = twist[0] - t187;
-        let rate_2_leg3 = g2_vy_leg3 * t193 - minus_g2_vx_leg3 * t196;
-        let t199 = rate_2_leg3 * rate_2_leg3;
-        let t201 = t21 * t183 - t11 * t189 + 0.34 * t199;
-        let rate_dot_1_leg3 = t12 * t201;
-        let rate_1_leg1 = g1_vy_leg1 * t149 - (twist[0] - t74);
-        let rate_1_leg2 = g1_vx_leg2 * t169 - minus_g1_vy_leg2 * t172;
-        let rate_1_leg3 = g1_vx_leg3 * t196 - minus_g1_vy_leg3 * t193;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t30);
-        let t219 = minus_g2_vy_leg1 * t83 + g2_wz_leg1 * t62;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t145 + 0.34 * c2_leg1 * t151);
-        let t227 = minus_g2_vy_leg1 * t103 + g2_wz_leg1 * t66;
-        let t231 = minus_g2_vy_leg1 * t110 + g2_wz_leg1 * t68;
-        let g2_wz_leg2 = g2_vy_leg2 * t42 + g2_vx_leg2 * t38;
-        let t240 = g2_wz_leg2 * t62 - (g2_vx_leg2 * t73 + g2_vy_leg2 * t83);
-        let t246 = 0.8660254037844386 * t165 + 0.5 * t159;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t5
-            * (t175 * (0.34 * c2_leg2) - t246);
-        let t254 = g2_vy_leg2 * t103 - g2_vx_leg2 * t99 - g2_wz_leg2 * t66;
-        let t260 = g2_wz_leg2 * t68 - (g2_vx_leg2 * t108 + g2_vy_leg2 * t110);
-        let g2_wz_leg3 = g2_vy_leg3 * t52 + minus_g2_vx_leg3 * t54;
-        let t269 = minus_g2_vx_leg3 * t73 - g2_vy_leg3 * t83 + g2_wz_leg3 * t62;
-        let t273 = 0.5 * t189 - 0.8660254037844386 * t183;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t12
-            * (t273 - t199 * (0.34 * c2_leg3));
-        let t283 = minus_g2_vx_leg3 * t99 + g2_vy_leg3 * t103 - g2_wz_leg3 * t66;
-        let t289 = minus_g2_vx_leg3 * t108 - g2_vy_leg3 * t110 + g2_wz_leg3 * t68;
-        let t292 = s2_leg1 * minus_rate_dot_1_leg1;
-        let t317 = minus_rate_2_leg1 + twist[2];
-        let t324 = twist[2] - rate_2_leg2;
-        let t331 = twist[2] - rate_2_leg3;
+        let t194 = twist[0] - t185;
+        let rate_2_leg3 = g2_vy_leg3 * t191 - minus_g2_vx_leg3 * t194;
+        let t198 = 0.34 * (rate_2_leg3 * rate_2_leg3);
+        let t199 = t21 * t181 - t11 * t187 + t198;
+        let rate_dot_1_leg3 = t12 * t199;
+        let t201 = g1_vy_leg1 * t147;
+        let rate_1_leg1 = t201 - (twist[0] - t74);
+        let rate_1_leg2 = g1_vx_leg2 * t167 - minus_g1_vy_leg2 * t170;
+        let rate_1_leg3 = g1_vx_leg3 * t194 - minus_g1_vy_leg3 * t191;
+        let g2_wz_leg1 = t32 * minus_g2_vy_leg1;
+        let t216 = minus_g2_vy_leg1 * t83 + g2_wz_leg1 * t62;
+        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t143 + minus_rate_2_leg1 * t201);
+        let t223 = minus_g2_vy_leg1 * t103 + g2_wz_leg1 * t66;
+        let t227 = minus_g2_vy_leg1 * t110 + g2_wz_leg1 * t68;
+        let t229 = 2.9411764705882355 * t5;
+        let g2_wz_leg2 = t32 * t229;
+        let t235 = g2_wz_leg2 * t62 - (g2_vx_leg2 * t73 + g2_vy_leg2 * t83);
+        let t239 = 0.8660254037844386 * t163 + 0.5 * t157;
+        let minus_rate_dot_2_leg2 = t229 * (c2_leg2 * t174 - t239);
+        let t247 = g2_vy_leg2 * t103 - g2_vx_leg2 * t99 - g2_wz_leg2 * t66;
+        let t253 = g2_wz_leg2 * t68 - (g2_vx_leg2 * t108 + g2_vy_leg2 * t110);
+        let t258 = 2.9411764705882355 * t12;
+        let g2_wz_leg3 = t32 * t258;
+        let t261 = minus_g2_vx_leg3 * t73 - g2_vy_leg3 * t83 + g2_wz_leg3 * t62;
+        let t264 = 0.5 * t187 - 0.8660254037844386 * t181;
+        let rate_dot_2_leg3 = t258 * (t264 - c2_leg3 * t198);
+        let t273 = minus_g2_vx_leg3 * t99 + g2_vy_leg3 * t103 - g2_wz_leg3 * t66;
+        let t279 = minus_g2_vx_leg3 * t108 - g2_vy_leg3 * t110 + g2_wz_leg3 * t68;
+        let t282 = s2_leg1 * minus_rate_dot_1_leg1;
+        let t307 = minus_rate_2_leg1 + twist[2];
+        let t314 = twist[2] - rate_2_leg2;
+        let t321 = twist[2] - rate_2_leg3;
         Ok([
             [
-                t62 * acceleration[2], t73 * t78 - t83 * t88 + t62 * t93,
-                t73 * t88 + t83 * t78 - t62 * t120,
+                t62 * acceleration[2], t73 * t78 + t83 * t88 + t62 * t93,
+                t83 * t78 - t73 * t88 - t62 * t120,
                 -(t73 * acceleration[0] + t83 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0, 0.0,
                 rate_1_leg1, 0.0, 0.0, ::overact::math::sign(rate_1_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                -(t219 * minus_rate_dot_2_leg1), -(t240 * minus_rate_dot_2_leg2),
-                t269 * rate_dot_2_leg3, 2.9411764705882355 * t145 + t219 * t292, t240 * t177,
-                -(t269 * t201), -::overact::math::signed(t219, minus_rate_2_leg1),
-                ::overact::math::signed(t240, rate_2_leg2),
-                ::overact::math::signed(t269, rate_2_leg3),
-                ::overact::math::signed(t62 - t219, t317),
-                ::overact::math::signed(t62 - t240, t324),
-                ::overact::math::signed(t62 - t269, t331),
+                -(t216 * minus_rate_dot_2_leg1), -(t235 * minus_rate_dot_2_leg2),
+                t261 * rate_dot_2_leg3, 2.9411764705882355 * t143 + t216 * t282, t235 * t175,
+                -(t261 * t199), -::overact::math::signed(t216, minus_rate_2_leg1),
+                ::overact::math::signed(t235, rate_2_leg2),
+                ::overact::math::signed(t261, rate_2_leg3),
+                ::overact::math::signed(t62 - t216, t307),
+                ::overact::math::signed(t62 - t235, t314),
+                ::overact::math::signed(t62 - t261, t321),
             ],
             [
-                -(t66 * acceleration[2]), t99 * t78 + t103 * t88 - t66 * t93,
-                t99 * t88 - t103 * t78 + t66 * t120, t103 * acceleration[1] - t99 * acceleration[0],
-                0.0, -minus_rate_dot_1_leg2, 0.0, 0.0, rate_1_leg2, 0.0, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, 0.0, 1.0, 0.0,
-                t227 * minus_rate_dot_2_leg1, -(t254 * minus_rate_dot_2_leg2),
-                t283 * rate_dot_2_leg3, -(t227 * t292), t254 * t177 - 2.9411764705882355 * t246,
-                -(t283 * t201), ::overact::math::signed(t227, minus_rate_2_leg1),
-                ::overact::math::signed(t254, rate_2_leg2),
-                ::overact::math::signed(t283, rate_2_leg3),
-                ::overact::math::signed(t227 - t66, t317),
-                -::overact::math::signed(t254 + t66, t324),
-                -::overact::math::signed(t283 + t66, t331),
+                -(t66 * acceleration[2]), t99 * t78 - t103 * t88 - t66 * t93,
+                t66 * t120 - (t99 * t88 + t103 * t78),
+                t103 * acceleration[1] - t99 * acceleration[0], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                0.0, rate_1_leg2, 0.0, 0.0, ::overact::math::sign(rate_1_leg2), 0.0, 0.0, 1.0, 0.0,
+                t223 * minus_rate_dot_2_leg1, -(t247 * minus_rate_dot_2_leg2),
+                t273 * rate_dot_2_leg3, -(t223 * t282), t247 * t175 - 2.9411764705882355 * t239,
+                -(t273 * t199), ::overact::math::signed(t223, minus_rate_2_leg1),
+                ::overact::math::signed(t247, rate_2_leg2),
+                ::overact::math::signed(t273, rate_2_leg3),
+                ::overact::math::signed(t223 - t66, t307),
+                -::overact::math::signed(t247 + t66, t314),
+                -::overact::math::signed(t273 + t66, t321),
             ],
             [
-                t68 * acceleration[2], t108 * t78 - t110 * t88 + t68 * t93,
-                t108 * t88 + t110 * t78 - t68 * t120,
+                t68 * acceleration[2], t108 * t78 + t110 * t88 + t68 * t93,
+                t110 * t78 - t108 * t88 - t68 * t120,
                 -(t108 * acceleration[0] + t110 * acceleration[1]), 0.0, 0.0, rate_dot_1_leg3, 0.0,
                 0.0, rate_1_leg3, 0.0, 0.0, ::overact::math::sign(rate_1_leg3), 0.0, 0.0, 1.0,
-                -(t231 * minus_rate_dot_2_leg1), -(t260 * minus_rate_dot_2_leg2),
-                t289 * rate_dot_2_leg3, t231 * t292, t260 * t177,
-                -(2.9411764705882355 * t273 + t289 * t201),
-                -::overact::math::signed(t231, minus_rate_2_leg1),
-                ::overact::math::signed(t260, rate_2_leg2),
-                ::overact::math::signed(t289, rate_2_leg3),
-                ::overact::math::signed(t68 - t231, t317),
-                ::overact::math::signed(t68 - t260, t324),
-                ::overact::math::signed(t68 - t289, t331),
+                -(t227 * minus_rate_dot_2_leg1), -(t253 * minus_rate_dot_2_leg2),
+                t279 * rate_dot_2_leg3, t227 * t282, t253 * t175,
+                -(2.9411764705882355 * t264 + t279 * t199),
+                -::overact::math::signed(t227, minus_rate_2_leg1),
+                ::overact::math::signed(t253, rate_2_leg2),
+                ::overact::math::signed(t279, rate_2_leg3),
+                ::overact::math::signed(t68 - t227, t307),
+                ::overact::math::signed(t68 - t253, t314),
+                ::overact::math::signed(t68 - t279, t321),
             ],
         ])
     }
@@ -3370,7 +3304,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 455 operations (172 additions, 276 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 430 intermediates.
+    /// 432 operations (163 additions, 262 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 407 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3382,229 +3316,225 @@ impl Planar3Prr {
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t21 = 8.650519031141869 * (t14 * t14 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t21, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t21);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t26 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t28 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t26;
-        let t29 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t28 * t29;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t34 = 0.08 * minus_c23_leg2;
-        let t36 = pose[0] + t34 - 0.25980762113533157;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t6 = 0.08 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t41 = 0.08 * minus_s23_leg2;
-        let t43 = pose[1] + t41 + 0.15;
-        let t45 = 0.8660254037844386 * t36 - 0.5 * t43;
-        let t49 = 0.5 * t36 + 0.8660254037844386 * t43;
-        let t56 = 8.650519031141869 * (t49 * t49 - (t36 * t36 + t43 * t43 - 0.1156));
-        ::overact::guard::reach(t56, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t56);
+        let t14 = 0.08 * minus_s23_leg2;
+        let t15 = 0.08 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t27 = 8.650519031141869 * (t20 * t20 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t27, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t27);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t32 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t34 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t32;
+        let t35 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t34 * t35;
+        let t38 = pose[0] + t5 - 0.25980762113533157;
+        let t41 = pose[1] + t14 + 0.15;
+        let t43 = 0.8660254037844386 * t38 - 0.5 * t41;
+        let t47 = 0.5 * t38 + 0.8660254037844386 * t41;
+        let t54 = 8.650519031141869 * (t47 * t47 - (t38 * t38 + t41 * t41 - 0.1156));
+        ::overact::guard::reach(t54, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t54);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t59 = 2.5471335405424664 * t45 - 0.5 * minus_s2_leg3;
-        let t60 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t59 * t60;
-        let t65 = 2.5471335405424664 * t26 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t65 * t29;
-        let t69 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45;
-        let g1_vy_leg3 = t69 * t60;
-        let t73 = 0.08 * s_phi;
-        let t74 = 0.08 * c_phi;
-        let t76 = pose[1] + t74 - 0.3;
-        let t77 = pose[0] - t73;
-        let t78 = t77 * t77;
-        let t83 = 8.650519031141869 * (t78 - (t78 + t76 * t76 - 0.1156));
-        ::overact::guard::reach(t83, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t83);
+        let t57 = 2.5471335405424664 * t43 - 0.5 * minus_s2_leg3;
+        let t58 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t57 * t58;
+        let t63 = 2.5471335405424664 * t32 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t63 * t35;
+        let t67 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t43;
+        let g1_vy_leg3 = t67 * t58;
+        let t72 = pose[1] + t15 - 0.3;
+        let t75 = 8.650519031141869 * (0.1156 - t72 * t72);
+        ::overact::guard::reach(t75, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t75);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t85 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t85;
-        let minus_g1_vy_leg1 = t76 * g2_vy_leg1;
-        let g1_wz_leg1 = t73 * minus_g1_vy_leg1 + t74;
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let t95 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
-        let t98 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
-        let g1_wz_leg3 = t34 * g1_vy_leg3 + t41 * minus_g1_vx_leg3;
-        let t105 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
-        let t107 = minus_g1_vx_leg3 * t95 + g1_vy_leg3 * t98 + g1_wz_leg3 * t105;
-        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
-        ::overact::guard::platform(t107, 0.35754477384814676, "kept actuators")?;
-        let t108 = 1.0 / t107;
-        let t109 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
-            * t108;
-        let t118 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t77 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t77;
+        let minus_g1_vy_leg1 = t72 * g2_vy_leg1;
+        let g1_wz_leg1 = t6 * minus_g1_vy_leg1 + t15;
+        let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let t87 = g1_wz_leg1 * minus_g1_vy_leg2 + minus_g1_vy_leg1 * minus_g1_wz_leg2;
+        let t90 = g1_wz_leg1 * minus_g1_vx_leg2 + minus_g1_wz_leg2;
+        let g1_wz_leg3 = t5 * g1_vy_leg3 + t14 * minus_g1_vx_leg3;
+        let t97 = minus_g1_vy_leg1 * minus_g1_vx_leg2 - minus_g1_vy_leg2;
+        let t99 = minus_g1_vx_leg3 * t87 + g1_vy_leg3 * t90 + g1_wz_leg3 * t97;
+        ::overact::guard::platform(t99, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.35754477384814676, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.35754477384814676, "kept actuators")?;
+        let t100 = 1.0 / t99;
+        let t101 = (minus_g1_vy_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_vy_leg3)
+            * t100;
+        let t110 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t122 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t114 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t122, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t122, 2.5803571428571423, "actuators")?;
-        let t123 = 1.0 / t122;
-        let t124 = t118 * t123;
-        let t135 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t114, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t114, 2.5803571428571423, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t110 * t115;
+        let t127 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t137 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t135 * t124;
-        let t143 = t135 * t123;
-        let t145 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+        let t129 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t127 * t116;
+        let t135 = t127 * t115;
+        let t137 = minus_g1_vy_leg1 * minus_g1_vy_leg1
             + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t135 * t143;
-        ::overact::guard::platform(t145, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t145, 2.580357142857142, "actuators")?;
-        let t146 = 1.0 / t145;
-        let t147 = t137 * t146;
-        let t149 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t118 * t124 - t137 * t147;
-        ::overact::guard::platform(t149, 0.0192, "actuators")?;
-        ::overact::guard::platform(t149, 0.0192, "actuators")?;
-        let t150 = 1.0 / t149;
-        let t159 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+            - t127 * t135;
+        ::overact::guard::platform(t137, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t137, 2.580357142857142, "actuators")?;
+        let t138 = 1.0 / t137;
+        let t139 = t129 * t138;
+        let t141 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t110 * t116 - t129 * t139;
+        ::overact::guard::platform(t141, 0.0192, "actuators")?;
+        ::overact::guard::platform(t141, 0.0192, "actuators")?;
+        let t142 = 1.0 / t141;
+        let t151 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2];
-        let t168 = g1_vy_leg3 * actuator_velocities[2]
+        let t160 = g1_vy_leg3 * actuator_velocities[2]
             - (minus_g1_vy_leg1 * actuator_velocities[0]
-                + minus_g1_vy_leg2 * actuator_velocities[1]) + t159 * t143;
-        let rate_3_leg1 = t150
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t151 * t135;
+        let rate_3_leg1 = t142
             * (g1_wz_leg1 * actuator_velocities[0]
                 - minus_g1_wz_leg2 * actuator_velocities[1]
-                + g1_wz_leg3 * actuator_velocities[2] + t159 * t124 - t147 * t168);
-        let t172 = t73 * rate_3_leg1;
-        let t173 = rate_3_leg1 * t172;
-        let t175 = rate_3_leg1 * (t74 * rate_3_leg1);
-        let t180 = t146 * t168 - t147 * rate_3_leg1;
-        let rate_2_leg1 = g2_vy_leg1 * (t180 - t172);
-        let t183 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t173 - minus_g1_vy_leg1 * t175 + t183 * (0.34 * t85);
-        let t187 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t189 = t4 * rate_3_leg1;
-        let t190 = rate_3_leg1 * t189;
-        let t192 = t10 * rate_3_leg1;
-        let t193 = rate_3_leg1 * t192;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t29;
-        let t201 = t159 * t123 + t143 * t180 + t124 * rate_3_leg1;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t29;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t192 - t201)
-            + minus_g2_vy_leg2 * (t180 + t189);
-        let t208 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t209 = 0.34 * t208;
-        let rate_dot_1_leg2 = t29 * (t65 * t190 - t28 * t193 - t209);
-        let t212 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t215 = t41 * rate_3_leg1;
-        let t216 = rate_3_leg1 * t215;
-        let t218 = t34 * rate_3_leg1;
-        let t219 = rate_3_leg1 * t218;
-        let g2_vx_leg3 = 2.5471335405424664 * t60;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t60;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t201 + t215)
-            + minus_g2_vy_leg3 * (t180 + t218);
-        let t229 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t230 = 0.34 * t229;
-        let minus_rate_dot_1_leg3 = t60 * (t69 * t216 - t59 * t219 + t230);
-        let t233 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t239 = t187 + minus_g1_vx_leg2 * t212 + minus_g1_vx_leg3 * t233;
-        let t248 = g1_vy_leg3 * t233
-            - (minus_g1_vy_leg1 * t187 + minus_g1_vy_leg2 * t212) + t143 * t239;
-        let rate_dot_3_leg1 = t150
-            * (g1_wz_leg1 * t187 - minus_g1_wz_leg2 * t212 + g1_wz_leg3 * t233
-                + t124 * t239 - t147 * t248);
-        let t255 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t108;
-        let t257 = t105 * t108;
-        let t262 = t146 * t248 - t147 * rate_dot_3_leg1;
-        let t266 = t123 * t239 + t143 * t262 + t124 * rate_dot_3_leg1;
-        let t269 = s_phi * t266 + c_phi * t262;
-        let t274 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
-            * t108;
-        let t275 = t73 * rate_dot_3_leg1;
-        let t277 = 12.5 * (t175 + t275);
-        let t282 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
-            * t108;
-        let t285 = 12.5 * (t74 * rate_dot_3_leg1 - t173);
-        let t292 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t108;
-        let t296 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t108;
-        let t301 = t95 * t108;
-        let t303 = t98 * t108;
-        let t313 = s_phi * t262 - c_phi * t266;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t85);
-        let t342 = g2_vy_leg1 * t282 + minus_g2_wz_leg1 * t109;
-        let t344 = t262 - t275 - t175;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t344 + t76 * t183);
-        let t351 = g2_vy_leg1 * t296 + minus_g2_wz_leg1 * t255;
-        let t355 = g2_vy_leg1 * t303 - minus_g2_wz_leg1 * t257;
-        let minus_g2_wz_leg2 = t4 * minus_g2_vy_leg2 + t10 * minus_g2_vx_leg2;
-        let t364 = minus_g2_vy_leg2 * t282 - minus_g2_vx_leg2 * t274
-            - minus_g2_wz_leg2 * t109;
-        let t368 = t10 * rate_dot_3_leg1 - t266 - t190;
-        let t372 = t262 + t4 * rate_dot_3_leg1 + t193;
-        let t374 = 0.8660254037844386 * t368 + 0.5 * t372;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t29 * (t374 + t26 * t208);
-        let t383 = minus_g2_vx_leg2 * t292 - minus_g2_vy_leg2 * t296
-            + minus_g2_wz_leg2 * t255;
-        let t389 = minus_g2_vx_leg2 * t301 - minus_g2_vy_leg2 * t303
-            - minus_g2_wz_leg2 * t257;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t60)
-            + 0.2037706832433973 * (minus_s23_leg2 * t60);
-        let t400 = g2_vx_leg3 * t274 + minus_g2_vy_leg3 * t282 - minus_g2_wz_leg3 * t109;
-        let t404 = t266 + t41 * rate_dot_3_leg1 + t219;
-        let t408 = t262 + t34 * rate_dot_3_leg1 - t216;
-        let t410 = 0.8660254037844386 * t404 + 0.5 * t408;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t60 * (t410 - t45 * t229);
-        let t419 = minus_g2_wz_leg3 * t255
-            - (g2_vx_leg3 * t292 + minus_g2_vy_leg3 * t296);
-        let t425 = g2_vx_leg3 * t301 + minus_g2_vy_leg3 * t303 + minus_g2_wz_leg3 * t257;
-        let t428 = minus_s2_leg1 * actuator_accelerations[0];
-        let t436 = t65 * t368 + t28 * t372 + t209;
-        let t445 = t230 - (t59 * t404 + t69 * t408);
-        let t461 = rate_3_leg1 - rate_2_leg1;
-        let t468 = minus_rate_2_leg2 + rate_3_leg1;
-        let t475 = minus_rate_2_leg3 + rate_3_leg1;
+                + g1_wz_leg3 * actuator_velocities[2] + t151 * t116 - t139 * t160);
+        let t164 = t6 * rate_3_leg1;
+        let t165 = rate_3_leg1 * t164;
+        let t166 = t16 * rate_3_leg1;
+        let t167 = rate_3_leg1 * t166;
+        let t168 = t14 * rate_3_leg1;
+        let t169 = rate_3_leg1 * t168;
+        let t170 = t167 - t169;
+        let t175 = t138 * t160 - t139 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t175 - t164);
+        let t178 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t165 - minus_g1_vy_leg1 * t170 + t178 * (0.34 * t77);
+        let t182 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t184 = t7 * rate_3_leg1;
+        let t185 = rate_3_leg1 * t184;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t35;
+        let t194 = t151 * t115 + t135 * t175 + t116 * rate_3_leg1;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t35;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t166 - t194)
+            + minus_g2_vy_leg2 * (t175 + t184);
+        let t201 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t35 * (t63 * t185 - t34 * t167 - 0.34 * t201);
+        let t205 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t209 = t5 * rate_3_leg1;
+        let t210 = rate_3_leg1 * t209;
+        let g2_vx_leg3 = 2.5471335405424664 * t58;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t58;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t194 + t168)
+            + minus_g2_vy_leg3 * (t175 + t209);
+        let t220 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t58 * (t67 * t169 - t57 * t210 + 0.34 * t220);
+        let t224 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t230 = t182 + minus_g1_vx_leg2 * t205 + minus_g1_vx_leg3 * t224;
+        let t239 = g1_vy_leg3 * t224
+            - (minus_g1_vy_leg1 * t182 + minus_g1_vy_leg2 * t205) + t135 * t230;
+        let rate_dot_3_leg1 = t142
+            * (g1_wz_leg1 * t182 - minus_g1_wz_leg2 * t205 + g1_wz_leg3 * t224
+                + t116 * t230 - t139 * t239);
+        let t246 = (minus_g1_vy_leg1 * minus_g1_vx_leg3 + g1_vy_leg3) * t100;
+        let t248 = t97 * t100;
+        let t253 = (minus_g1_wz_leg2 * minus_g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3)
+            * t100;
+        let t256 = 12.5 * (t165 - t15 * rate_dot_3_leg1);
+        let t261 = (minus_g1_vy_leg2 * g1_wz_leg3 - minus_g1_wz_leg2 * g1_vy_leg3)
+            * t100;
+        let t263 = t170 + t6 * rate_dot_3_leg1;
+        let t264 = 12.5 * t263;
+        let t269 = t138 * t239 - t139 * rate_dot_3_leg1;
+        let t275 = t115 * t230 + t135 * t269 + t116 * rate_dot_3_leg1;
+        let t277 = c_phi * t269 + s_phi * t275;
+        let t283 = (g1_wz_leg1 * g1_vy_leg3 + minus_g1_vy_leg1 * g1_wz_leg3) * t100;
+        let t287 = (g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3) * t100;
+        let t292 = t87 * t100;
+        let t294 = t90 * t100;
+        let t304 = c_phi * t275 - s_phi * t269;
+        let minus_g2_wz_leg1 = t6 * g2_vy_leg1;
+        let t332 = g2_vy_leg1 * t253 + minus_g2_wz_leg1 * t101;
+        let t333 = t269 - t263;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t333 + t72 * t178);
+        let t340 = g2_vy_leg1 * t287 + minus_g2_wz_leg1 * t246;
+        let t344 = g2_vy_leg1 * t294 - minus_g2_wz_leg1 * t248;
+        let t349 = 2.9411764705882355 * t35;
+        let minus_g2_wz_leg2 = t6 * t349;
+        let t352 = minus_g2_vy_leg2 * t253 - minus_g2_vx_leg2 * t261
+            - minus_g2_wz_leg2 * t101;
+        let t361 = 0.8660254037844386 * (t16 * rate_dot_3_leg1 - t275 - t185)
+            + 0.5 * (t269 + t7 * rate_dot_3_leg1 + t167);
+        let minus_rate_dot_2_leg2 = t349 * (t361 + t32 * t201);
+        let t370 = minus_g2_vx_leg2 * t283 - minus_g2_vy_leg2 * t287
+            + minus_g2_wz_leg2 * t246;
+        let t376 = minus_g2_vx_leg2 * t292 - minus_g2_vy_leg2 * t294
+            - minus_g2_wz_leg2 * t248;
+        let t381 = 2.9411764705882355 * t58;
+        let minus_g2_wz_leg3 = t6 * t381;
+        let t384 = g2_vx_leg3 * t261 + minus_g2_vy_leg3 * t253 - minus_g2_wz_leg3 * t101;
+        let t393 = 0.8660254037844386 * (t275 + t14 * rate_dot_3_leg1 + t210)
+            + 0.5 * (t269 + t5 * rate_dot_3_leg1 - t169);
+        let minus_rate_dot_2_leg3 = t381 * (t393 - t43 * t220);
+        let t402 = minus_g2_wz_leg3 * t246
+            - (g2_vx_leg3 * t283 + minus_g2_vy_leg3 * t287);
+        let t408 = g2_vx_leg3 * t292 + minus_g2_vy_leg3 * t294 + minus_g2_wz_leg3 * t248;
+        let t411 = minus_s2_leg1 * actuator_accelerations[0];
+        let t416 = minus_s2_leg2 * actuator_accelerations[1];
+        let t422 = minus_s2_leg3 * actuator_accelerations[2];
+        let t438 = rate_3_leg1 - rate_2_leg1;
+        let t445 = minus_rate_2_leg2 + rate_3_leg1;
+        let t452 = minus_rate_2_leg3 + rate_3_leg1;
         Ok([
             [
-                t109 * rate_dot_3_leg1, t109 * t269 - (t274 * t277 + t282 * t285),
-                t282 * t277 - t274 * t285 - t109 * t313, -(t274 * t266 + t282 * t262),
+                t101 * rate_dot_3_leg1, t253 * t256 - t261 * t264 + t101 * t277,
+                t261 * t256 + t253 * t264 + t101 * t304, -(t261 * t275 + t253 * t269),
                 actuator_accelerations[0], 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                -(t342 * rate_dot_2_leg1), -(t364 * minus_rate_dot_2_leg2),
-                -(t400 * minus_rate_dot_2_leg3), 2.9411764705882355 * t344 - t342 * t428,
-                -(t364 * t436), -(t400 * t445), -::overact::math::signed(t342, rate_2_leg1),
-                -::overact::math::signed(t364, minus_rate_2_leg2),
-                -::overact::math::signed(t400, minus_rate_2_leg3),
-                ::overact::math::signed(t342 + t109, t461),
-                ::overact::math::signed(t109 - t364, t468),
-                ::overact::math::signed(t109 - t400, t475),
+                -(t332 * rate_dot_2_leg1), -(t352 * minus_rate_dot_2_leg2),
+                -(t384 * minus_rate_dot_2_leg3), 2.9411764705882355 * t333 - t332 * t411,
+                t352 * t416, t384 * t422, -::overact::math::signed(t332, rate_2_leg1),
+                -::overact::math::signed(t352, minus_rate_2_leg2),
+                -::overact::math::signed(t384, minus_rate_2_leg3),
+                ::overact::math::signed(t332 + t101, t438),
+                ::overact::math::signed(t101 - t352, t445),
+                ::overact::math::signed(t101 - t384, t452),
             ],
             [
-                -(t255 * rate_dot_3_leg1), t292 * t277 + t296 * t285 - t255 * t269,
-                t292 * t285 - t296 * t277 + t255 * t313, t292 * t266 + t296 * t262, 0.0,
+                -(t246 * rate_dot_3_leg1), t283 * t264 - t287 * t256 - t246 * t277,
+                -(t283 * t256 + t287 * t264 + t246 * t304), t283 * t275 + t287 * t269, 0.0,
                 actuator_accelerations[1], 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                t351 * rate_dot_2_leg1, -(t383 * minus_rate_dot_2_leg2),
-                -(t419 * minus_rate_dot_2_leg3), t351 * t428,
-                -(2.9411764705882355 * t374 + t383 * t436), -(t419 * t445),
-                ::overact::math::signed(t351, rate_2_leg1),
-                -::overact::math::signed(t383, minus_rate_2_leg2),
-                -::overact::math::signed(t419, minus_rate_2_leg3),
-                -::overact::math::signed(t351 + t255, t461),
-                -::overact::math::signed(t383 + t255, t468),
-                -::overact::math::signed(t419 + t255, t475),
+                t340 * rate_dot_2_leg1, -(t370 * minus_rate_dot_2_leg2),
+                -(t402 * minus_rate_dot_2_leg3), t340 * t411,
+                -(2.9411764705882355 * t361 - t370 * t416), t402 * t422,
+                ::overact::math::signed(t340, rate_2_leg1),
+                -::overact::math::signed(t370, minus_rate_2_leg2),
+                -::overact::math::signed(t402, minus_rate_2_leg3),
+                -::overact::math::signed(t340 + t246, t438),
+                -::overact::math::signed(t370 + t246, t445),
+                -::overact::math::signed(t402 + t246, t452),
             ],
             [
-                t257 * rate_dot_3_leg1, t301 * t277 + t303 * t285 + t257 * t269,
-                t301 * t285 - t303 * t277 - t257 * t313, t301 * t266 + t303 * t262, 0.0, 0.0,
+                t248 * rate_dot_3_leg1, t292 * t264 - t294 * t256 + t248 * t277,
+                t248 * t304 - (t292 * t256 + t294 * t264), t292 * t275 + t294 * t269, 0.0, 0.0,
                 actuator_accelerations[2], 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0,
-                t355 * rate_dot_2_leg1, -(t389 * minus_rate_dot_2_leg2),
-                t425 * minus_rate_dot_2_leg3, t355 * t428, -(t389 * t436),
-                t425 * t445 - 2.9411764705882355 * t410, ::overact::math::signed(t355, rate_2_leg1),
-                -::overact::math::signed(t389, minus_rate_2_leg2),
-                ::overact::math::signed(t425, minus_rate_2_leg3),
-                ::overact::math::signed(t257 - t355, t461),
-                ::overact::math::signed(t257 - t389, t468),
-                ::overact::math::signed(t425 + t257, t475),
+                t344 * rate_dot_2_leg1, -(t376 * minus_rate_dot_2_leg2),
+                t408 * minus_rate_dot_2_leg3, t344 * t411, t376 * t416,
+                -(t408 * t422 + 2.9411764705882355 * t393),
+                ::overact::math::signed(t344, rate_2_leg1),
+                -::overact::math::signed(t376, minus_rate_2_leg2),
+                ::overact::math::signed(t408, minus_rate_2_leg3),
+                ::overact::math::signed(t248 - t344, t438),
+                ::overact::math::signed(t248 - t376, t445),
+                ::overact::math::signed(t408 + t248, t452),
             ],
         ])
     }
@@ -3616,7 +3546,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 101 operations (41 additions, 57 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 103 intermediates.
+    /// 93 operations (38 additions, 52 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 95 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3625,50 +3555,48 @@ impl Planar3Prr {
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t18 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t25 = 8.650519031141869 * (t18 * t18 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t25, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t25);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t29 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (2.5471335405424664 * t14 - 0.5 * minus_s2_leg2) * t29;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t36 = 0.08 * minus_c23_leg2;
-        let t38 = pose[0] + t36 - 0.25980762113533157;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t6 = 0.08 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t43 = 0.08 * minus_s23_leg2;
-        let t45 = pose[1] + t43 + 0.15;
-        let t47 = 0.8660254037844386 * t38 - 0.5 * t45;
-        let t51 = 0.5 * t38 + 0.8660254037844386 * t45;
-        let t58 = 8.650519031141869 * (t51 * t51 - (t38 * t38 + t45 * t45 - 0.1156));
-        ::overact::guard::reach(t58, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t58);
+        let t14 = 0.08 * minus_s23_leg2;
+        let t15 = 0.08 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t24 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t31 = 8.650519031141869 * (t24 * t24 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t31, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t31);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t35 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (2.5471335405424664 * t20 - 0.5 * minus_s2_leg2) * t35;
+        let t40 = pose[0] + t5 - 0.25980762113533157;
+        let t43 = pose[1] + t14 + 0.15;
+        let t45 = 0.8660254037844386 * t40 - 0.5 * t43;
+        let t49 = 0.5 * t40 + 0.8660254037844386 * t43;
+        let t56 = 8.650519031141869 * (t49 * t49 - (t40 * t40 + t43 * t43 - 0.1156));
+        ::overact::guard::reach(t56, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t56);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t62 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (2.5471335405424664 * t47 - 0.5 * minus_s2_leg3) * t62;
-        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t47)
-            * t62;
-        let t71 = 0.08 * c_phi;
-        let t73 = pose[1] + t71 - 0.3;
-        let t74 = 0.08 * s_phi;
-        let t75 = pose[0] - t74;
-        let t76 = t75 * t75;
-        let t81 = 8.650519031141869 * (t76 - (t76 + t73 * t73 - 0.1156));
-        ::overact::guard::reach(t81, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t81);
+        let t60 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t45 - 0.5 * minus_s2_leg3) * t60;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t45)
+            * t60;
+        let t70 = pose[1] + t15 - 0.3;
+        let t73 = 8.650519031141869 * (0.1156 - t70 * t70);
+        ::overact::guard::reach(t73, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t73);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
         let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
-        let minus_g1_vy_leg1 = t73 * g2_vy_leg1;
+        let minus_g1_vy_leg1 = t70 * g2_vy_leg1;
         let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
-            + 1.4705882352941178 * t14) * t29;
-        let g1_wz_leg1 = t74 * minus_g1_vy_leg1 + t71;
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t36 * g1_vy_leg3 + t43 * minus_g1_vx_leg3;
+            + 1.4705882352941178 * t20) * t35;
+        let g1_wz_leg1 = t6 * minus_g1_vy_leg1 + t15;
+        let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t5 * g1_vy_leg3 + t14 * minus_g1_vx_leg3;
         Ok([
             -(torques[0] + minus_g1_vx_leg2 * torques[1]
                 + minus_g1_vx_leg3 * torques[2]),
@@ -3701,7 +3629,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 417 operations (174 additions, 237 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 428 intermediates.
+    /// 396 operations (167 additions, 223 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 407 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3715,191 +3643,191 @@ impl Planar3Prr {
         let t2 = 0.08 * s_phi;
         let t3 = 0.08 * c_phi;
         let t5 = pose[1] + t3 - 0.3;
-        let t6 = pose[0] - t2;
-        let t7 = t6 * t6;
-        let t12 = 8.650519031141869 * (t7 - (t7 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t12, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        let t8 = 8.650519031141869 * (0.1156 - t5 * t5);
+        ::overact::guard::reach(t8, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t8);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t14 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let t10 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t10;
         let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
-        let t22 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t24 = pose[0] + t22 + 0.25980762113533157;
-        let t28 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t30 = pose[1] - t28 + 0.15;
-        let t32 = 0.5 * t24 - 0.8660254037844386 * t30;
-        let t39 = 8.650519031141869 * (t32 * t32 - (t24 * t24 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t44 = 0.8660254037844386 * t24 + 0.5 * t30;
-        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t44;
-        let t47 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t46 * t47;
-        let t52 = 2.5471335405424664 * t44 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t52 * t47;
-        let minus_g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t61 = 0.08 * minus_c23_leg2;
-        let t63 = pose[0] + t61 - 0.25980762113533157;
-        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t68 = 0.08 * minus_s23_leg2;
-        let t70 = pose[1] + t68 + 0.15;
-        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
-        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
-        ::overact::guard::reach(t79, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t79);
-        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
-        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
-        let t87 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = t86 * t87;
-        let t92 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t92 * t87;
-        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
-        let t101 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
-            - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t105 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t107 = t101 * t106;
-        let t118 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t120 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t118 * t107;
-        let t126 = t118 * t106;
-        let t128 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t118 * t126;
-        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = t120 * t129;
-        let t132 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t101 * t107 - t120 * t130;
-        ::overact::guard::platform(t132, 0.0192, "actuators")?;
-        let t135 = t2 * twist[2];
-        let t140 = t3 * twist[2];
-        let t142 = acceleration[1] - t2 * acceleration[2] - twist[2] * t140;
-        let t145 = twist[1] - t135;
-        let rate_2_leg1 = g2_vy_leg1 * t145;
-        let t147 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t3 * acceleration[2]
-            + twist[2] * t135 + minus_g1_vy_leg1 * t142 + t147 * (0.34 * t14);
-        let minus_rate_1_leg1 = twist[0] - t140 + minus_g1_vy_leg1 * t145;
+        let t15 = t2 * twist[2];
+        let t18 = twist[2] * t15 - t3 * acceleration[2];
+        let t20 = t3 * twist[2];
+        let t23 = twist[2] * t20 + t2 * acceleration[2];
+        let t24 = acceleration[1] - t23;
+        let t27 = twist[1] - t15;
+        let rate_2_leg1 = g2_vy_leg1 * t27;
+        let t29 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = acceleration[0] + t18 + minus_g1_vy_leg1 * t24
+            + t29 * (0.34 * t10);
+        let minus_rate_1_leg1 = twist[0] - t20 + minus_g1_vy_leg1 * t27;
         let c2_leg1 = 2.9411764705882355 * t5;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t142 + t5 * t147);
-        let t169 = c2_leg1 * minus_rate_dot_1_leg1;
-        let t173 = minus_s2_leg1 * minus_rate_dot_1_leg1;
-        let t180 = c2_leg1
-            * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t147
-                - parameters[8] * t169)
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t24 + t5 * t29);
+        let t51 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t55 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t62 = c2_leg1
+            * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t29
+                - parameters[8] * t51)
             - minus_s2_leg1
-                * (parameters[8] * t173
-                    - (parameters[6] * t147 + parameters[7] * rate_dot_2_leg1));
-        let t181 = parameters[4]
+                * (parameters[8] * t55
+                    - (parameters[6] * t29 + parameters[7] * rate_dot_2_leg1));
+        let t63 = parameters[4]
             - (parameters[1] * minus_rate_dot_1_leg1 + parameters[2] * minus_rate_1_leg1
                 + ::overact::math::signed(parameters[3], minus_rate_1_leg1))
-            - parameters[0] * minus_rate_dot_1_leg1 + t180;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
-        let t193 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t194 = parameters[5] * rate_dot_2_leg1 - parameters[6] * t169
-            - parameters[7] * t173 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t193;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
-        let t199 = t28 * twist[2];
-        let t200 = twist[0] + t199;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
-        let t203 = t22 * twist[2];
-        let t204 = twist[1] + t203;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t200 + minus_g2_vy_leg2 * t204;
-        let t208 = ::overact::math::signed(parameters[21], minus_rate_2_leg2 + twist[2]);
-        let t212 = acceleration[0] + t28 * acceleration[2] - twist[2] * t203;
-        let t217 = acceleration[1] + t22 * acceleration[2] + twist[2] * t199;
-        let t220 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t222 = t52 * t212 + t46 * t217 + 0.34 * t220;
-        let minus_rate_dot_1_leg2 = t47 * t222;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t204;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47
-            * (0.8660254037844386 * t212 + 0.5 * t217 + t44 * t220);
-        let minus_c2_leg2 = 2.9411764705882355 * t44;
-        let t249 = minus_c2_leg2 * minus_rate_dot_1_leg2;
-        let t256 = minus_s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t220
-                + parameters[19] * t222)
+            - parameters[0] * minus_rate_dot_1_leg1 + t62;
+        let t73 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t75 = g2_vy_leg1
+            * (parameters[5] * rate_dot_2_leg1 - parameters[6] * t51
+                - parameters[7] * t55
+                + ::overact::math::signed(parameters[9], rate_2_leg1) - t73);
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t82 = 0.08 * minus_c23_leg2;
+        let t83 = t2 - t82;
+        let t85 = pose[0] + t83 + 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t90 = 0.08 * minus_s23_leg2;
+        let t91 = t3 + t90;
+        let t93 = pose[1] - t91 + 0.15;
+        let t95 = 0.5 * t85 - 0.8660254037844386 * t93;
+        let t102 = 8.650519031141869 * (t95 * t95 - (t85 * t85 + t93 * t93 - 0.1156));
+        ::overact::guard::reach(t102, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t102);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t104 = 1.0 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t104;
+        let t106 = t91 * twist[2];
+        let t107 = twist[0] + t106;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t104;
+        let t110 = t83 * twist[2];
+        let t111 = twist[1] + t110;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t107 + minus_g2_vy_leg2 * t111;
+        let t115 = ::overact::math::signed(parameters[21], minus_rate_2_leg2 + twist[2]);
+        let t119 = 0.8660254037844386 * t85 + 0.5 * t93;
+        let t121 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t119;
+        let minus_g1_vy_leg2 = t121 * t104;
+        let t126 = 2.5471335405424664 * t119 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t126 * t104;
+        let minus_g1_wz_leg2 = t83 * minus_g1_vy_leg2 + t91 * minus_g1_vx_leg2;
+        let t133 = acceleration[0] + t91 * acceleration[2] - twist[2] * t110;
+        let t138 = acceleration[1] + t83 * acceleration[2] + twist[2] * t106;
+        let t141 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t143 = t126 * t133 + t121 * t138 + 0.34 * t141;
+        let minus_rate_dot_1_leg2 = t104 * t143;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t107 + minus_g1_vy_leg2 * t111;
+        let t156 = 2.9411764705882355 * t104;
+        let minus_rate_dot_2_leg2 = t156
+            * (0.8660254037844386 * t133 + 0.5 * t138 + t119 * t141);
+        let minus_c2_leg2 = 2.9411764705882355 * t119;
+        let t170 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t177 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t141
+                + parameters[19] * t143)
             + minus_c2_leg2
-                * (parameters[19] * t249
-                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t220));
-        let t257 = parameters[15]
+                * (parameters[19] * t170
+                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t141));
+        let t178 = parameters[15]
             - (parameters[12] * minus_rate_dot_1_leg2
                 + parameters[13] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
-            - parameters[11] * minus_rate_dot_1_leg2 - t256;
-        let minus_g2_wz_leg2 = t22 * minus_g2_vy_leg2 + t28 * minus_g2_vx_leg2;
-        let t269 = parameters[17] * t249 - parameters[16] * minus_rate_dot_2_leg2
-            - parameters[18] * t222
-            - ::overact::math::signed(parameters[20], minus_rate_2_leg2) - t208;
-        let t274 = t61 * twist[2];
-        let t275 = twist[1] + t274;
-        let t277 = t68 * twist[2];
-        let t278 = twist[0] - t277;
-        let rate_1_leg3 = g1_vy_leg3 * t275 - minus_g1_vx_leg3 * t278;
-        let t285 = acceleration[0] - t68 * acceleration[2] - twist[2] * t274;
-        let t290 = acceleration[1] + t61 * acceleration[2] - twist[2] * t277;
-        let g2_vx_leg3 = 2.5471335405424664 * t87;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
-        let rate_2_leg3 = g2_vx_leg3 * t278 - minus_g2_vy_leg3 * t275;
-        let t298 = rate_2_leg3 * rate_2_leg3;
-        let t300 = t92 * t285 - t86 * t290 + 0.34 * t298;
-        let minus_rate_dot_1_leg3 = t87 * t300;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87
-            * (0.5 * t290 - 0.8660254037844386 * t285 - t84 * t298);
-        let c2_leg3 = 2.9411764705882355 * t84;
-        let t326 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t330 = minus_s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t298
-                + parameters[30] * t300)
+            - parameters[11] * minus_rate_dot_1_leg2 - t177;
+        let minus_g2_wz_leg2 = t2 * t156;
+        let t188 = parameters[17] * t170 - parameters[16] * minus_rate_dot_2_leg2
+            - parameters[18] * t143
+            - ::overact::math::signed(parameters[20], minus_rate_2_leg2) - t115;
+        let t194 = pose[0] + t82 - 0.25980762113533157;
+        let t197 = pose[1] + t90 + 0.15;
+        let t199 = 0.5 * t194 + 0.8660254037844386 * t197;
+        let t206 = 8.650519031141869
+            * (t199 * t199 - (t194 * t194 + t197 * t197 - 0.1156));
+        ::overact::guard::reach(t206, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t206);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
+        let t211 = 0.8660254037844386 * t194 - 0.5 * t197;
+        let t213 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t211;
+        let t214 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t213 * t214;
+        let t219 = 2.5471335405424664 * t211 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t219 * t214;
+        let g1_wz_leg3 = t82 * g1_vy_leg3 + t90 * minus_g1_vx_leg3;
+        let t223 = t82 * twist[2];
+        let t224 = twist[1] + t223;
+        let t226 = t90 * twist[2];
+        let t227 = twist[0] - t226;
+        let rate_1_leg3 = g1_vy_leg3 * t224 - minus_g1_vx_leg3 * t227;
+        let t234 = acceleration[0] - t90 * acceleration[2] - twist[2] * t223;
+        let t239 = acceleration[1] + t82 * acceleration[2] - twist[2] * t226;
+        let g2_vx_leg3 = 2.5471335405424664 * t214;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t214;
+        let rate_2_leg3 = g2_vx_leg3 * t227 - minus_g2_vy_leg3 * t224;
+        let t247 = rate_2_leg3 * rate_2_leg3;
+        let t249 = t219 * t234 - t213 * t239 + 0.34 * t247;
+        let minus_rate_dot_1_leg3 = t214 * t249;
+        let t258 = 2.9411764705882355 * t214;
+        let minus_rate_dot_2_leg3 = t258
+            * (0.5 * t239 - 0.8660254037844386 * t234 - t211 * t247);
+        let c2_leg3 = 2.9411764705882355 * t211;
+        let t275 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t279 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t247
+                + parameters[30] * t249)
             + c2_leg3
-                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t298
-                    + parameters[30] * t326);
-        let t331 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
+                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t247
+                    + parameters[30] * t275);
+        let t280 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            - parameters[22] * minus_rate_dot_1_leg3 - t330;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
-            + 0.2037706832433973 * (minus_s23_leg2 * t87);
-        let t346 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t347 = ::overact::math::signed(parameters[31], rate_2_leg3)
-            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t326
-                + parameters[29] * t300) - t346;
-        let t351 = g1_wz_leg1 * t181 - minus_g2_wz_leg1 * t194 + t193 + t208
-            - (minus_g1_wz_leg2 * t257 + minus_g2_wz_leg2 * t269) + g1_wz_leg3 * t331
-            - minus_g2_wz_leg3 * t347 + t346;
-        let t355 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t360 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t373 = twist[2] * twist[2];
-        let t377 = parameters[36] * t360
-            - (parameters[34] * t373 + acceleration[2] * parameters[35]);
-        let t383 = acceleration[2] * parameters[34] - parameters[35] * t373
-            + parameters[36] * t355;
-        let t386 = g2_vx_leg3 * t347 - minus_g1_vx_leg3 * t331
-            - (t181 + minus_g1_vx_leg2 * t257 + minus_g2_vx_leg2 * t269) + c_phi * t377
-            - s_phi * t383;
-        let t399 = g2_vy_leg1 * t194 - minus_g1_vy_leg1 * t181
-            - (minus_g1_vy_leg2 * t257 + minus_g2_vy_leg2 * t269) + g1_vy_leg3 * t331
-            - minus_g2_vy_leg3 * t347;
-        let t405 = t399 + s_phi * t377 + c_phi * t383 - t386 * t126;
-        let t407 = t351 + acceleration[2] * parameters[33] + parameters[34] * t355
-            - parameters[35] * t360 - t386 * t107 - t130 * t405;
-        let t408 = t407 / t132;
-        let t413 = t129 * t405 - t130 * t408;
-        let t417 = t386 * t106 - t126 * t413 - t107 * t408;
+            - parameters[22] * minus_rate_dot_1_leg3 - t279;
+        let minus_g2_wz_leg3 = t2 * t258;
+        let t291 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t292 = ::overact::math::signed(parameters[31], rate_2_leg3)
+            - (parameters[27] * minus_rate_dot_2_leg3 + parameters[28] * t275
+                + parameters[29] * t249) - t291;
+        let t296 = g1_wz_leg1 * t63 - t2 * t75 + t73 + t115
+            - (minus_g1_wz_leg2 * t178 + minus_g2_wz_leg2 * t188) + g1_wz_leg3 * t280
+            - minus_g2_wz_leg3 * t292 + t291;
+        let t307 = acceleration[2] * parameters[33]
+            + parameters[34] * (c_phi * acceleration[1] - s_phi * acceleration[0])
+            - parameters[35] * (s_phi * acceleration[1] + c_phi * acceleration[0]);
+        let t317 = 12.5 * t18;
+        let t319 = 12.5 * t23;
+        let t324 = g2_vx_leg3 * t292 - minus_g1_vx_leg3 * t280
+            - (t63 + minus_g1_vx_leg2 * t178 + minus_g2_vx_leg2 * t188)
+            + parameters[35] * t317 - parameters[34] * t319
+            + acceleration[0] * parameters[36];
+        let t328 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+            - minus_g1_vx_leg3 * g1_wz_leg3;
+        let t332 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t332, 2.5803571428571423, "actuators")?;
+        let t333 = 1.0 / t332;
+        let t334 = t328 * t333;
+        let t345 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t347 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t345 * t334;
+        let t353 = t345 * t333;
+        let t355 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t345 * t353;
+        ::overact::guard::platform(t355, 2.580357142857142, "actuators")?;
+        let t356 = 1.0 / t355;
+        let t357 = t347 * t356;
+        let t367 = t75 - minus_g1_vy_leg1 * t63
+            - (minus_g1_vy_leg2 * t178 + minus_g2_vy_leg2 * t188) + g1_vy_leg3 * t280
+            - minus_g2_vy_leg3 * t292;
+        let t375 = t367 + acceleration[1] * parameters[36]
+            - (parameters[34] * t317 + parameters[35] * t319) - t324 * t353;
+        let t386 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t328 * t334 - t347 * t357;
+        ::overact::guard::platform(t386, 0.0192, "actuators")?;
+        let t387 = (t296 + t307 - t324 * t334 - t357 * t375) / t386;
+        let t392 = t356 * t375 - t357 * t387;
+        let t396 = t324 * t333 - t353 * t392 - t334 * t387;
         Ok([
-            g1_wz_leg1 * t408 - (t417 + minus_g1_vy_leg1 * t413),
-            -(minus_g1_vx_leg2 * t417 + minus_g1_vy_leg2 * t413
-                + minus_g1_wz_leg2 * t408),
-            g1_vy_leg3 * t413 - minus_g1_vx_leg3 * t417 + g1_wz_leg3 * t408,
+            g1_wz_leg1 * t387 - (t396 + minus_g1_vy_leg1 * t392),
+            -(minus_g1_vx_leg2 * t396 + minus_g1_vy_leg2 * t392
+                + minus_g1_wz_leg2 * t387),
+            g1_vy_leg3 * t392 - minus_g1_vx_leg3 * t396 + g1_wz_leg3 * t387,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3913,7 +3841,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 366 operations (150 additions, 210 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 9 signs, 380 intermediates.
+    /// 352 operations (146 additions, 200 multiplications, 6 divisions), 0 square roots, 4 trigonometric pairs, 9 signs, 366 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3954,136 +3882,141 @@ impl Planar3Prr {
         let t46 = 0.08 * s_phi;
         let t47 = t46 * twist[2];
         let t48 = twist[1] - t47;
+        let t49 = g1_vy_leg1 * t48;
         let t50 = 0.08 * c_phi;
         let t51 = t50 * twist[2];
-        let rate_1_leg1 = g1_vy_leg1 * t48 - (twist[0] - t51);
-        let t62 = acceleration[1] - t46 * acceleration[2] - twist[2] * t51;
+        let rate_1_leg1 = t49 - (twist[0] - t51);
+        let t57 = twist[2] * t47 - t50 * acceleration[2];
+        let t61 = twist[2] * t51 + t46 * acceleration[2];
+        let t62 = acceleration[1] - t61;
         let minus_g2_vy_leg1 = 2.9411764705882355 * t2;
         let minus_rate_2_leg1 = minus_g2_vy_leg1 * t48;
         let t67 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let minus_rate_dot_1_leg1 = acceleration[0] - t50 * acceleration[2]
-            + twist[2] * t47 - g1_vy_leg1 * t62 - t67 * (0.34 * t2);
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t62 + 0.34 * c2_leg1 * t67);
-        let t85 = s2_leg1 * minus_rate_dot_1_leg1;
-        let t92 = c2_leg1 * minus_rate_dot_1_leg1;
-        let t96 = s2_leg1
+        let minus_rate_dot_1_leg1 = acceleration[0] + t57 - g1_vy_leg1 * t62
+            - t67 * (0.34 * t2);
+        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t62 + t49 * minus_rate_2_leg1);
+        let t84 = s2_leg1 * minus_rate_dot_1_leg1;
+        let t91 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t95 = s2_leg1
             * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t67
-                - parameters[8] * t85)
+                - parameters[8] * t84)
             - c2_leg1
                 * (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t67
-                    + parameters[8] * t92);
-        let t97 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
+                    + parameters[8] * t91);
+        let t96 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t96;
-        let t107 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
-        let t108 = parameters[7] * t85
-            - (parameters[5] * minus_rate_dot_2_leg1 + parameters[6] * t92)
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t107;
+            - parameters[0] * minus_rate_dot_1_leg1 + t95;
+        let t106 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
+        let t108 = minus_g2_vy_leg1
+            * (parameters[7] * t84
+                - (parameters[5] * minus_rate_dot_2_leg1 + parameters[6] * t91)
+                - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t106);
         let g2_vy_leg2 = 1.4705882352941178 * t10;
-        let t112 = 0.04 * s_phi;
-        let t113 = 0.06928203230275509 * c_phi;
-        let t114 = t112 - t113;
-        let t117 = 0.06928203230275509 * s_phi;
-        let t118 = 0.04 * c_phi;
-        let t119 = t117 + t118;
-        let t120 = t119 * twist[2];
-        let t122 = acceleration[1] + t114 * acceleration[2] + twist[2] * t120;
-        let t126 = t114 * twist[2];
-        let t128 = acceleration[0] + t119 * acceleration[2] - twist[2] * t126;
+        let t111 = 0.04 * s_phi;
+        let t112 = 0.06928203230275509 * c_phi;
+        let t113 = t111 - t112;
+        let t116 = 0.06928203230275509 * s_phi;
+        let t117 = 0.04 * c_phi;
+        let t118 = t116 + t117;
+        let t119 = t118 * twist[2];
+        let t121 = acceleration[1] + t113 * acceleration[2] + twist[2] * t119;
+        let t125 = t113 * twist[2];
+        let t127 = acceleration[0] + t118 * acceleration[2] - twist[2] * t125;
         let g2_vx_leg2 = 2.5471335405424664 * t10;
-        let t132 = twist[0] + t120;
-        let t134 = twist[1] + t126;
-        let rate_2_leg2 = g2_vx_leg2 * t132 + g2_vy_leg2 * t134;
-        let t137 = rate_2_leg2 * rate_2_leg2;
-        let t139 = t9 * t122 - t25 * t128 - 0.34 * t137;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t10
-            * (t137 * (0.34 * c2_leg2) - (0.8660254037844386 * t128 + 0.5 * t122));
-        let minus_rate_dot_1_leg2 = t10 * t139;
-        let t151 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t158 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t159 = parameters[18] * t139
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t151)
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t158;
-        let rate_1_leg2 = g1_vx_leg2 * t132 - minus_g1_vy_leg2 * t134;
-        let t184 = s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t137
-                - parameters[19] * t139)
+        let t131 = twist[0] + t119;
+        let t133 = twist[1] + t125;
+        let rate_2_leg2 = g2_vx_leg2 * t131 + g2_vy_leg2 * t133;
+        let t136 = rate_2_leg2 * rate_2_leg2;
+        let t137 = 0.34 * t136;
+        let t138 = t9 * t121 - t25 * t127 - t137;
+        let t140 = 2.9411764705882355 * t10;
+        let minus_rate_dot_2_leg2 = t140
+            * (c2_leg2 * t137 - (0.8660254037844386 * t127 + 0.5 * t121));
+        let minus_rate_dot_1_leg2 = t10 * t138;
+        let t149 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t156 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t157 = parameters[18] * t138
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t149)
+            + ::overact::math::signed(parameters[20], rate_2_leg2) - t156;
+        let rate_1_leg2 = g1_vx_leg2 * t131 - minus_g1_vy_leg2 * t133;
+        let t182 = s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t136
+                - parameters[19] * t138)
             - c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t137
-                    + parameters[19] * t151);
-        let t185 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t136
+                    + parameters[19] * t149);
+        let t183 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[14], rate_1_leg2) + parameters[15]
-            - parameters[11] * minus_rate_dot_1_leg2 + t184;
+            - parameters[11] * minus_rate_dot_1_leg2 + t182;
         let g2_vy_leg3 = 1.4705882352941178 * t19;
-        let t191 = t113 + t112;
-        let t194 = t117 - t118;
-        let t195 = t194 * twist[2];
-        let t197 = acceleration[1] + t191 * acceleration[2] - twist[2] * t195;
-        let t201 = t191 * twist[2];
-        let t203 = acceleration[0] - t194 * acceleration[2] - twist[2] * t201;
-        let t206 = twist[1] + t201;
+        let t188 = 2.9411764705882355 * t19;
+        let t189 = t112 + t111;
+        let t192 = t116 - t117;
+        let t193 = t192 * twist[2];
+        let t195 = acceleration[1] + t189 * acceleration[2] - twist[2] * t193;
+        let t199 = t189 * twist[2];
+        let t201 = acceleration[0] - t192 * acceleration[2] - twist[2] * t199;
+        let t204 = twist[1] + t199;
         let minus_g2_vx_leg3 = 2.5471335405424664 * t19;
-        let t209 = twist[0] - t195;
-        let rate_2_leg3 = g2_vy_leg3 * t206 - minus_g2_vx_leg3 * t209;
-        let t212 = rate_2_leg3 * rate_2_leg3;
-        let rate_dot_2_leg3 = 2.9411764705882355 * t19
-            * (0.5 * t197 - 0.8660254037844386 * t203 - t212 * (0.34 * c2_leg3));
-        let t222 = t31 * t203 - t18 * t197 + 0.34 * t212;
-        let rate_dot_1_leg3 = t19 * t222;
-        let t224 = c2_leg3 * rate_dot_1_leg3;
-        let t232 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t233 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t224
-            - parameters[29] * t222
-            + ::overact::math::signed(parameters[31], rate_2_leg3) - t232;
-        let rate_1_leg3 = g1_vx_leg3 * t209 - minus_g1_vy_leg3 * t206;
-        let t258 = s2_leg3
-            * (parameters[30] * t222
-                - (parameters[28] * t212 + parameters[29] * rate_dot_2_leg3))
+        let t207 = twist[0] - t193;
+        let rate_2_leg3 = g2_vy_leg3 * t204 - minus_g2_vx_leg3 * t207;
+        let t210 = rate_2_leg3 * rate_2_leg3;
+        let t211 = 0.34 * t210;
+        let rate_dot_2_leg3 = t188
+            * (0.5 * t195 - 0.8660254037844386 * t201 - c2_leg3 * t211);
+        let t219 = t31 * t201 - t18 * t195 + t211;
+        let rate_dot_1_leg3 = t19 * t219;
+        let t221 = c2_leg3 * rate_dot_1_leg3;
+        let t229 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t230 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t221
+            - parameters[29] * t219
+            + ::overact::math::signed(parameters[31], rate_2_leg3) - t229;
+        let rate_1_leg3 = g1_vx_leg3 * t207 - minus_g1_vy_leg3 * t204;
+        let t255 = s2_leg3
+            * (parameters[30] * t219
+                - (parameters[28] * t210 + parameters[29] * rate_dot_2_leg3))
             + c2_leg3
-                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t212
-                    + parameters[30] * t224);
-        let t259 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
+                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t210
+                    + parameters[30] * t221);
+        let t256 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
             + parameters[24] * rate_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            + t258;
-        let t262 = g1_vy_leg1 * t97 - minus_g2_vy_leg1 * t108 + g2_vy_leg2 * t159
-            - minus_g1_vy_leg2 * t185 + g2_vy_leg3 * t233 - minus_g1_vy_leg3 * t259;
-        let t265 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t267 = twist[2] * twist[2];
-        let t271 = parameters[36] * t265
-            - (parameters[34] * t267 + acceleration[2] * parameters[35]);
-        let t278 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t280 = acceleration[2] * parameters[34] - parameters[35] * t267
-            + parameters[36] * t278;
-        let t295 = g1_vx_leg2 * t185 + g2_vx_leg2 * t159 - t97 + g1_vx_leg3 * t259
-            - minus_g2_vx_leg3 * t233 + c_phi * t271 - s_phi * t280;
-        let t297 = t262 + s_phi * t271 + c_phi * t280 + t295 * t40;
+            + t255;
+        let t259 = g1_vy_leg1 * t96 - t108 + g2_vy_leg2 * t157 - minus_g1_vy_leg2 * t183
+            + g2_vy_leg3 * t230 - minus_g1_vy_leg3 * t256;
+        let t261 = 12.5 * t57;
+        let t263 = 12.5 * t61;
+        let t281 = g1_vx_leg2 * t183 + g2_vx_leg2 * t157 - t96 + g1_vx_leg3 * t256
+            - minus_g2_vx_leg3 * t230 + parameters[35] * t261 - parameters[34] * t263
+            + acceleration[0] * parameters[36];
+        let t283 = t259 + acceleration[1] * parameters[36]
+            - (parameters[34] * t261 + parameters[35] * t263) + t281 * t40;
         let g1_wz_leg1 = t50 - g1_vy_leg1 * t46;
-        let g1_wz_leg2 = g1_vx_leg2 * t119 - minus_g1_vy_leg2 * t114;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t191 + g1_vx_leg3 * t194;
-        let t315 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t316 = t315 * t39;
-        let t318 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t34 * t316;
-        let t319 = t318 * t43;
-        let t328 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t315 * t316 - t318 * t319;
-        ::overact::guard::platform(t328, 0.019200000000000002, "actuators")?;
-        let g2_wz_leg1 = 0.23529411764705882 * (s_phi * t2);
-        let g2_wz_leg2 = g2_vy_leg2 * t114 + g2_vx_leg2 * t119;
-        let g2_wz_leg3 = g2_vy_leg3 * t191 + minus_g2_vx_leg3 * t194;
-        let t350 = g1_wz_leg1 * t97 + g2_wz_leg1 * t108 + t107 + g1_wz_leg2 * t185
-            + g2_wz_leg2 * t159 + t158 + g2_wz_leg3 * t233 - minus_g1_wz_leg3 * t259
-            + t232;
-        let t360 = t350 + acceleration[2] * parameters[33] + parameters[34] * t278
-            - parameters[35] * t265 - t295 * t316 - t319 * t297;
-        let t361 = t360 / t328;
-        let t363 = t43 * t297 - t319 * t361;
-        let t369 = t295 * t39 + t40 * t363 - t316 * t361;
+        let g1_wz_leg2 = g1_vx_leg2 * t118 - minus_g1_vy_leg2 * t113;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t189 + g1_vx_leg3 * t192;
+        let t301 = g1_vx_leg2 * g1_wz_leg2 - g1_wz_leg1 - g1_vx_leg3 * minus_g1_wz_leg3;
+        let t302 = t301 * t39;
+        let t304 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t34 * t302;
+        let t305 = t304 * t43;
+        let g2_wz_leg2 = t46 * t140;
+        let g2_wz_leg3 = t46 * t188;
+        let t321 = g1_wz_leg1 * t96 + t46 * t108 + t106 + g1_wz_leg2 * t183
+            + g2_wz_leg2 * t157 + t156 + g2_wz_leg3 * t230 - minus_g1_wz_leg3 * t256
+            + t229;
+        let t332 = acceleration[2] * parameters[33]
+            + parameters[34] * (c_phi * acceleration[1] - s_phi * acceleration[0])
+            - parameters[35] * (s_phi * acceleration[1] + c_phi * acceleration[0]);
+        let t346 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t301 * t302 - t304 * t305;
+        ::overact::guard::platform(t346, 0.019200000000000002, "actuators")?;
+        let t347 = (t321 + t332 - t281 * t302 - t305 * t283) / t346;
+        let t349 = t43 * t283 - t305 * t347;
+        let t355 = t281 * t39 + t40 * t349 - t302 * t347;
         Ok([
-            g1_vy_leg1 * t363 - t369 + g1_wz_leg1 * t361,
-            g1_vx_leg2 * t369 - minus_g1_vy_leg2 * t363 + g1_wz_leg2 * t361,
-            g1_vx_leg3 * t369 - minus_g1_vy_leg3 * t363 - minus_g1_wz_leg3 * t361,
+            g1_vy_leg1 * t349 - t355 + g1_wz_leg1 * t347,
+            g1_vx_leg2 * t355 - minus_g1_vy_leg2 * t349 + g1_wz_leg2 * t347,
+            g1_vx_leg3 * t355 - minus_g1_vy_leg3 * t349 - minus_g1_wz_leg3 * t347,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4097,7 +4030,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 494 operations (205 additions, 283 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 505 intermediates.
+    /// 449 operations (190 additions, 253 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 460 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4113,232 +4046,220 @@ impl Planar3Prr {
         let t2 = 0.08 * s_phi;
         let t3 = 0.08 * c_phi;
         let t5 = pose[1] + t3 - 0.3;
-        let t6 = pose[0] - t2;
-        let t7 = t6 * t6;
-        let t12 = 8.650519031141869 * (t7 - (t7 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t12, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t12);
+        let t8 = 8.650519031141869 * (0.1156 - t5 * t5);
+        ::overact::guard::reach(t8, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t8);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t14 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t14;
+        let t10 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t10;
         let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
-        let t22 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t24 = pose[0] + t22 + 0.25980762113533157;
-        let t28 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t19 = 0.08 * minus_c23_leg2;
+        let t20 = t2 - t19;
+        let t22 = pose[0] + t20 + 0.25980762113533157;
+        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t27 = 0.08 * minus_s23_leg2;
+        let t28 = t3 + t27;
         let t30 = pose[1] - t28 + 0.15;
-        let t32 = 0.5 * t24 - 0.8660254037844386 * t30;
-        let t39 = 8.650519031141869 * (t32 * t32 - (t24 * t24 + t30 * t30 - 0.1156));
+        let t32 = 0.5 * t22 - 0.8660254037844386 * t30;
+        let t39 = 8.650519031141869 * (t32 * t32 - (t22 * t22 + t30 * t30 - 0.1156));
         ::overact::guard::reach(t39, "leg2")?;
         let minus_s2_leg2 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t44 = 0.8660254037844386 * t24 + 0.5 * t30;
+        let t44 = 0.8660254037844386 * t22 + 0.5 * t30;
         let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t44;
         let t47 = 1.0 / minus_s2_leg2;
         let minus_g1_vy_leg2 = t46 * t47;
         let t52 = 2.5471335405424664 * t44 - 0.5 * minus_s2_leg2;
         let minus_g1_vx_leg2 = t52 * t47;
-        let minus_g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
-        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t61 = 0.08 * minus_c23_leg2;
-        let t63 = pose[0] + t61 - 0.25980762113533157;
-        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t68 = 0.08 * minus_s23_leg2;
-        let t70 = pose[1] + t68 + 0.15;
-        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
-        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
-        ::overact::guard::reach(t79, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        let minus_g1_wz_leg2 = t20 * minus_g1_vy_leg2 + t28 * minus_g1_vx_leg2;
+        let t59 = pose[0] + t19 - 0.25980762113533157;
+        let t62 = pose[1] + t27 + 0.15;
+        let t64 = 0.5 * t59 + 0.8660254037844386 * t62;
+        let t71 = 8.650519031141869 * (t64 * t64 - (t59 * t59 + t62 * t62 - 0.1156));
+        ::overact::guard::reach(t71, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t71);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t84 = 0.8660254037844386 * t63 - 0.5 * t70;
-        let t86 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t84;
-        let t87 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = t86 * t87;
-        let t92 = 2.5471335405424664 * t84 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t92 * t87;
-        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
-        let t101 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t76 = 0.8660254037844386 * t59 - 0.5 * t62;
+        let t78 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t76;
+        let t79 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t78 * t79;
+        let t84 = 2.5471335405424664 * t76 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t84 * t79;
+        let g1_wz_leg3 = t19 * g1_vy_leg3 + t27 * minus_g1_vx_leg3;
+        let t93 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t105 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t97 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t105, 2.5803571428571423, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t107 = t101 * t106;
-        let t118 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t97, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t97, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t97, 2.5803571428571423, "actuators")?;
+        let t98 = 1.0 / t97;
+        let t99 = t93 * t98;
+        let t110 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t120 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t118 * t107;
-        let t126 = t118 * t106;
-        let t128 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+        let t112 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t110 * t99;
+        let t118 = t110 * t98;
+        let t120 = minus_g1_vy_leg1 * minus_g1_vy_leg1
             + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t118 * t126;
-        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t128, 2.580357142857142, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = t120 * t129;
-        let t132 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t101 * t107 - t120 * t130;
-        ::overact::guard::platform(t132, 0.0192, "actuators")?;
-        ::overact::guard::platform(t132, 0.0192, "actuators")?;
-        ::overact::guard::platform(t132, 0.0192, "actuators")?;
-        let t133 = 1.0 / t132;
-        let t150 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
+            - t110 * t118;
+        ::overact::guard::platform(t120, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t120, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t120, 2.580357142857142, "actuators")?;
+        let t121 = 1.0 / t120;
+        let t122 = t112 * t121;
+        let t124 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t93 * t99 - t112 * t122;
+        ::overact::guard::platform(t124, 0.0192, "actuators")?;
+        ::overact::guard::platform(t124, 0.0192, "actuators")?;
+        ::overact::guard::platform(t124, 0.0192, "actuators")?;
+        let t125 = 1.0 / t124;
+        let t142 = actuator_velocities[0] + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2];
-        let t152 = g1_vy_leg3 * actuator_velocities[2]
+        let t144 = g1_vy_leg3 * actuator_velocities[2]
             - (minus_g1_vy_leg1 * actuator_velocities[0]
-                + minus_g1_vy_leg2 * actuator_velocities[1]) + t150 * t126;
-        let rate_3_leg1 = t133
+                + minus_g1_vy_leg2 * actuator_velocities[1]) + t142 * t118;
+        let rate_3_leg1 = t125
             * (g1_wz_leg1 * actuator_velocities[0]
                 - minus_g1_wz_leg2 * actuator_velocities[1]
-                + g1_wz_leg3 * actuator_velocities[2] + t150 * t107 - t130 * t152);
-        let t165 = t129 * t152 - t130 * rate_3_leg1;
-        let t166 = t2 * rate_3_leg1;
-        let rate_2_leg1 = g2_vy_leg1 * (t165 - t166);
-        let t169 = rate_2_leg1 * rate_2_leg1;
-        let t171 = t68 * rate_3_leg1;
-        let t172 = rate_3_leg1 * t171;
-        let t174 = t61 * rate_3_leg1;
-        let t175 = rate_3_leg1 * t174;
-        let g2_vx_leg3 = 2.5471335405424664 * t87;
-        let t183 = t150 * t106 + t126 * t165 + t107 * rate_3_leg1;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t87;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t183 + t171)
-            + minus_g2_vy_leg3 * (t165 + t174);
-        let t190 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t191 = 0.34 * t190;
-        let minus_rate_dot_1_leg3 = t87 * (t86 * t172 - t92 * t175 + t191);
-        let t194 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t198 = rate_3_leg1 * (t3 * rate_3_leg1);
-        let minus_rate_dot_1_leg1 = rate_3_leg1 * t166 - minus_g1_vy_leg1 * t198
-            + t169 * (0.34 * t14);
-        let t204 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t206 = t22 * rate_3_leg1;
-        let t207 = rate_3_leg1 * t206;
-        let t209 = t28 * rate_3_leg1;
-        let t210 = rate_3_leg1 * t209;
+                + g1_wz_leg3 * actuator_velocities[2] + t142 * t99 - t122 * t144);
+        let t157 = t121 * t144 - t122 * rate_3_leg1;
+        let t158 = t2 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t157 - t158);
+        let t161 = rate_2_leg1 * rate_2_leg1;
+        let t163 = t27 * rate_3_leg1;
+        let t164 = rate_3_leg1 * t163;
+        let t166 = t19 * rate_3_leg1;
+        let t167 = rate_3_leg1 * t166;
+        let g2_vx_leg3 = 2.5471335405424664 * t79;
+        let t175 = t142 * t98 + t118 * t157 + t99 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t79;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t175 + t163)
+            + minus_g2_vy_leg3 * (t157 + t166);
+        let t182 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t79 * (t78 * t164 - t84 * t167 + 0.34 * t182);
+        let t186 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t188 = rate_3_leg1 * t158;
+        let t189 = t28 * rate_3_leg1;
+        let t190 = rate_3_leg1 * t189;
+        let t191 = t190 - t164;
+        let minus_rate_dot_1_leg1 = t188 - minus_g1_vy_leg1 * t191 + t161 * (0.34 * t10);
+        let t197 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t199 = t20 * rate_3_leg1;
+        let t200 = rate_3_leg1 * t199;
         let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
         let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t209 - t183)
-            + minus_g2_vy_leg2 * (t165 + t206);
-        let t220 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t221 = 0.34 * t220;
-        let rate_dot_1_leg2 = t47 * (t52 * t207 - t46 * t210 - t221);
-        let t224 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t231 = t204 + minus_g1_vx_leg2 * t224 + minus_g1_vx_leg3 * t194;
-        let t233 = g1_vy_leg3 * t194
-            - (minus_g1_vy_leg1 * t204 + minus_g1_vy_leg2 * t224) + t126 * t231;
-        let rate_dot_3_leg1 = t133
-            * (g1_wz_leg1 * t204 - minus_g1_wz_leg2 * t224 + g1_wz_leg3 * t194
-                + t107 * t231 - t130 * t233);
-        let t246 = t129 * t233 - t130 * rate_dot_3_leg1;
-        let t250 = t5 * t169;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t246 - t2 * rate_dot_3_leg1 - t198 + t250);
-        let t255 = minus_s2_leg1 * actuator_accelerations[0];
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t189 - t175)
+            + minus_g2_vy_leg2 * (t157 + t199);
+        let t211 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t47 * (t52 * t200 - t46 * t190 - 0.34 * t211);
+        let t215 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t222 = t197 + minus_g1_vx_leg2 * t215 + minus_g1_vx_leg3 * t186;
+        let t224 = g1_vy_leg3 * t186
+            - (minus_g1_vy_leg1 * t197 + minus_g1_vy_leg2 * t215) + t118 * t222;
+        let rate_dot_3_leg1 = t125
+            * (g1_wz_leg1 * t197 - minus_g1_wz_leg2 * t215 + g1_wz_leg3 * t186
+                + t99 * t222 - t122 * t224);
+        let t237 = t121 * t224 - t122 * rate_dot_3_leg1;
+        let t239 = t191 + t2 * rate_dot_3_leg1;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t237 - t239 + t5 * t161);
+        let t246 = minus_s2_leg1 * actuator_accelerations[0];
         let c2_leg1 = 2.9411764705882355 * t5;
-        let t263 = c2_leg1 * actuator_accelerations[0];
-        let t267 = minus_s2_leg1
-            * (t169 * parameters[6] + parameters[7] * rate_dot_2_leg1
-                + parameters[8] * t255)
+        let t254 = c2_leg1 * actuator_accelerations[0];
+        let t258 = minus_s2_leg1
+            * (t161 * parameters[6] + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t246)
             + c2_leg1
-                * (parameters[6] * rate_dot_2_leg1 - t169 * parameters[7]
-                    + parameters[8] * t263);
-        let t268 = actuator_accelerations[0] * parameters[0]
+                * (parameters[6] * rate_dot_2_leg1 - t161 * parameters[7]
+                    + parameters[8] * t254);
+        let t259 = actuator_accelerations[0] * parameters[0]
             + actuator_accelerations[0] * parameters[1]
             + actuator_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], actuator_velocities[0])
-            + parameters[4] + t267;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t14);
-        let t280 = ::overact::math::signed(parameters[10], rate_3_leg1 - rate_2_leg1);
-        let t281 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t263
-            + parameters[7] * t255 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t280;
-        let minus_g2_wz_leg2 = t22 * minus_g2_vy_leg2 + t28 * minus_g2_vx_leg2;
-        let t294 = t106 * t231 + t126 * t246 + t107 * rate_dot_3_leg1;
-        let t296 = t28 * rate_dot_3_leg1 - t294 - t207;
-        let t300 = t246 + t22 * rate_dot_3_leg1 + t210;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47
-            * (0.8660254037844386 * t296 + 0.5 * t300 + t44 * t220);
+            + parameters[4] + t258;
+        let t269 = ::overact::math::signed(parameters[10], rate_3_leg1 - rate_2_leg1);
+        let t271 = g2_vy_leg1
+            * (parameters[5] * rate_dot_2_leg1 + parameters[6] * t254
+                + parameters[7] * t246
+                + ::overact::math::signed(parameters[9], rate_2_leg1) - t269);
+        let t275 = 2.9411764705882355 * t47;
+        let minus_g2_wz_leg2 = t2 * t275;
+        let t282 = t98 * t222 + t118 * t237 + t99 * rate_dot_3_leg1;
+        let t292 = 0.8660254037844386 * (t28 * rate_dot_3_leg1 - t282 - t200)
+            + 0.5 * (t237 + t20 * rate_dot_3_leg1 + t190) + t44 * t211;
+        let minus_rate_dot_2_leg2 = t275 * t292;
         let minus_c2_leg2 = 2.9411764705882355 * t44;
-        let t308 = minus_c2_leg2 * actuator_accelerations[1];
-        let t314 = t52 * t296 + t46 * t300 + t221;
-        let t320 = ::overact::math::signed(
+        let t296 = minus_c2_leg2 * actuator_accelerations[1];
+        let t299 = minus_s2_leg2 * actuator_accelerations[1];
+        let t305 = ::overact::math::signed(
             parameters[21],
             minus_rate_2_leg2 + rate_3_leg1,
         );
-        let t321 = parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t308
-            + parameters[18] * t314
-            + ::overact::math::signed(parameters[20], minus_rate_2_leg2) + t320;
-        let t343 = minus_c2_leg2
-            * (parameters[17] * minus_rate_dot_2_leg2 + t220 * parameters[18]
-                + parameters[19] * t308)
+        let t306 = parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t296
+            - parameters[18] * t299
+            + ::overact::math::signed(parameters[20], minus_rate_2_leg2) + t305;
+        let t328 = minus_c2_leg2
+            * (parameters[17] * minus_rate_dot_2_leg2 + t211 * parameters[18]
+                + parameters[19] * t296)
             - minus_s2_leg2
-                * (parameters[18] * minus_rate_dot_2_leg2 - t220 * parameters[17]
-                    + parameters[19] * t314);
-        let t344 = actuator_accelerations[1] * parameters[11]
+                * (parameters[18] * minus_rate_dot_2_leg2 - t211 * parameters[17]
+                    - parameters[19] * t299);
+        let t329 = actuator_accelerations[1] * parameters[11]
             + actuator_accelerations[1] * parameters[12]
             + actuator_velocities[1] * parameters[13]
             + ::overact::math::signed(parameters[14], actuator_velocities[1])
-            + parameters[15] + t343;
-        let c2_leg3 = 2.9411764705882355 * t84;
-        let t358 = c2_leg3 * actuator_accelerations[2];
-        let t363 = t294 + t68 * rate_dot_3_leg1 + t175;
-        let t367 = t246 + t61 * rate_dot_3_leg1 - t172;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t87
-            * (0.8660254037844386 * t363 + 0.5 * t367 - t84 * t190);
-        let t384 = t191 - (t92 * t363 + t86 * t367);
-        let t388 = c2_leg3
-            * (parameters[30] * t358
-                - (parameters[28] * minus_rate_dot_2_leg3 + t190 * parameters[29]))
+            + parameters[15] + t328;
+        let c2_leg3 = 2.9411764705882355 * t76;
+        let t343 = c2_leg3 * actuator_accelerations[2];
+        let t345 = 2.9411764705882355 * t79;
+        let t356 = 0.8660254037844386 * (t282 + t27 * rate_dot_3_leg1 + t167)
+            + 0.5 * (t237 + t19 * rate_dot_3_leg1 - t164) - t76 * t182;
+        let minus_rate_dot_2_leg3 = t345 * t356;
+        let t366 = minus_s2_leg3 * actuator_accelerations[2];
+        let t370 = c2_leg3
+            * (parameters[30] * t343
+                - (parameters[28] * minus_rate_dot_2_leg3 + t182 * parameters[29]))
             - minus_s2_leg3
-                * (parameters[29] * minus_rate_dot_2_leg3 - t190 * parameters[28]
-                    + parameters[30] * t384);
-        let t389 = actuator_accelerations[2] * parameters[22]
+                * (parameters[29] * minus_rate_dot_2_leg3 - t182 * parameters[28]
+                    - parameters[30] * t366);
+        let t371 = actuator_accelerations[2] * parameters[22]
             + actuator_accelerations[2] * parameters[23]
             + actuator_velocities[2] * parameters[24]
             + ::overact::math::signed(parameters[25], actuator_velocities[2])
-            + parameters[26] + t388;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t87)
-            + 0.2037706832433973 * (minus_s23_leg2 * t87);
-        let t404 = ::overact::math::signed(
+            + parameters[26] + t370;
+        let minus_g2_wz_leg3 = t2 * t345;
+        let t382 = ::overact::math::signed(
             parameters[32],
             minus_rate_2_leg3 + rate_3_leg1,
         );
-        let t405 = parameters[28] * t358 - parameters[27] * minus_rate_dot_2_leg3
-            - parameters[29] * t384
-            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t404;
-        let t409 = g1_wz_leg1 * t268 - minus_g2_wz_leg1 * t281 + t280
-            + minus_g2_wz_leg2 * t321 - minus_g1_wz_leg2 * t344 + t320
-            + g1_wz_leg3 * t389 - minus_g2_wz_leg3 * t405 + t404;
-        let t413 = s_phi * t294 + c_phi * t246;
-        let t418 = s_phi * t246 - c_phi * t294;
-        let c3_leg1 = 2.9411764705882355 * (s_phi * t5) + c_phi * minus_s2_leg1;
-        let rate_dot_2_leg1_2 = g2_vy_leg1 * (t250 - t198);
-        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t5);
-        let t449 = 12.5
-            * (c3_leg1 * (0.34 * rate_dot_2_leg1_2 - c2_leg1 * minus_rate_dot_1_leg1)
-                - s3_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1 - 0.34 * t169));
-        let t454 = t449 * parameters[34] - rate_dot_3_leg1 * parameters[35]
-            + parameters[36] * t418;
-        let t460 = rate_dot_3_leg1 * parameters[34] + t449 * parameters[35]
-            + parameters[36] * t413;
-        let t463 = minus_g2_vx_leg2 * t321 - minus_g1_vx_leg2 * t344 - t268
-            + g2_vx_leg3 * t405 - minus_g1_vx_leg3 * t389 + c_phi * t454 - s_phi * t460;
-        let t476 = g2_vy_leg1 * t281 - minus_g1_vy_leg1 * t268 + minus_g2_vy_leg2 * t321
-            - minus_g1_vy_leg2 * t344 + g1_vy_leg3 * t389 - minus_g2_vy_leg3 * t405;
-        let t482 = t476 + s_phi * t454 + c_phi * t460 - t126 * t463;
-        let t484 = t409 + rate_dot_3_leg1 * parameters[33] + parameters[34] * t413
-            - parameters[35] * t418 - t107 * t463 - t130 * t482;
-        let t485 = t133 * t484;
-        let t490 = t129 * t482 - t130 * t485;
-        let t494 = t106 * t463 - t126 * t490 - t107 * t485;
+        let t383 = parameters[28] * t343 - parameters[27] * minus_rate_dot_2_leg3
+            + parameters[29] * t366
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t382;
+        let t387 = g1_wz_leg1 * t259 - t2 * t271 + t269 + minus_g2_wz_leg2 * t306
+            - minus_g1_wz_leg2 * t329 + t305 + g1_wz_leg3 * t371
+            - minus_g2_wz_leg3 * t383 + t382;
+        let t398 = rate_dot_3_leg1 * parameters[33]
+            + parameters[34] * (c_phi * t237 + s_phi * t282)
+            + parameters[35] * (c_phi * t282 - s_phi * t237);
+        let t410 = 12.5 * (t188 - t3 * rate_dot_3_leg1);
+        let t412 = 12.5 * t239;
+        let t417 = minus_g2_vx_leg2 * t306 - minus_g1_vx_leg2 * t329 - t259
+            + g2_vx_leg3 * t383 - minus_g1_vx_leg3 * t371 + parameters[35] * t410
+            - parameters[34] * t412 - t282 * parameters[36];
+        let t429 = t271 - minus_g1_vy_leg1 * t259 + minus_g2_vy_leg2 * t306
+            - minus_g1_vy_leg2 * t329 + g1_vy_leg3 * t371 - minus_g2_vy_leg3 * t383;
+        let t437 = t429 + t237 * parameters[36]
+            - (parameters[34] * t410 + parameters[35] * t412) - t118 * t417;
+        let t440 = t125 * (t387 + t398 - t99 * t417 - t122 * t437);
+        let t445 = t121 * t437 - t122 * t440;
+        let t449 = t98 * t417 - t118 * t445 - t99 * t440;
         Ok([
-            g1_wz_leg1 * t485 - (t494 + minus_g1_vy_leg1 * t490),
-            -(minus_g1_vx_leg2 * t494 + minus_g1_vy_leg2 * t490
-                + minus_g1_wz_leg2 * t485),
-            g1_vy_leg3 * t490 - minus_g1_vx_leg3 * t494 + g1_wz_leg3 * t485,
+            g1_wz_leg1 * t440 - (t449 + minus_g1_vy_leg1 * t445),
+            -(minus_g1_vx_leg2 * t449 + minus_g1_vy_leg2 * t445
+                + minus_g1_wz_leg2 * t440),
+            g1_vy_leg3 * t445 - minus_g1_vx_leg3 * t449 + g1_wz_leg3 * t440,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -4349,7 +4270,7 @@ impl Planar3Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 338 operations (132 additions, 203 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 337 intermediates.
+    /// 321 operations (124 additions, 194 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 320 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4358,145 +4279,145 @@ impl Planar3Prr {
         parameters: &[f64; 37],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t6 = pose[0] + t4 + 0.25980762113533157;
-        let t10 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t12 = pose[1] - t10 + 0.15;
-        let t14 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t21 = 8.650519031141869 * (t14 * t14 - (t6 * t6 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t21, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t21);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t23 = 1.0 / minus_s2_leg2;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t23;
-        let t27 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let minus_c2_leg2 = 2.9411764705882355 * t27;
-        let t31 = 2.5471335405424664 * t27 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t31 * t23;
-        let t33 = minus_c2_leg2 * minus_g1_vx_leg2;
-        let t52 = minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]
-            + minus_s2_leg2 * (minus_g2_vx_leg2 * parameters[18] + t31 * parameters[19])
-            + minus_c2_leg2 * (parameters[19] * t33 - minus_g2_vx_leg2 * parameters[17]);
-        let t57 = minus_g2_vx_leg2
-            * (parameters[17] * t33 - minus_g2_vx_leg2 * parameters[16]
-                - t31 * parameters[18]) - minus_g1_vx_leg2 * t52
-            - (parameters[1] + parameters[0] + parameters[8]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t61 = 0.08 * minus_c23_leg2;
-        let t63 = pose[0] + t61 - 0.25980762113533157;
+        let t5 = 0.08 * minus_c23_leg2;
+        let t6 = 0.08 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t68 = 0.08 * minus_s23_leg2;
-        let t70 = pose[1] + t68 + 0.15;
-        let t72 = 0.5 * t63 + 0.8660254037844386 * t70;
-        let t79 = 8.650519031141869 * (t72 * t72 - (t63 * t63 + t70 * t70 - 0.1156));
-        ::overact::guard::reach(t79, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t79);
+        let t14 = 0.08 * minus_s23_leg2;
+        let t15 = 0.08 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.15;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t27 = 8.650519031141869 * (t20 * t20 - (t9 * t9 + t18 * t18 - 0.1156));
+        ::overact::guard::reach(t27, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t27);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t29 = 1.0 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t29;
+        let t33 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let minus_c2_leg2 = 2.9411764705882355 * t33;
+        let t37 = 2.5471335405424664 * t33 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t37 * t29;
+        let t39 = minus_c2_leg2 * minus_g1_vx_leg2;
+        let t58 = minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]
+            + minus_s2_leg2 * (minus_g2_vx_leg2 * parameters[18] + t37 * parameters[19])
+            + minus_c2_leg2 * (parameters[19] * t39 - minus_g2_vx_leg2 * parameters[17]);
+        let t61 = parameters[1] + parameters[0];
+        let t63 = minus_g2_vx_leg2
+            * (parameters[17] * t39 - minus_g2_vx_leg2 * parameters[16]
+                - t37 * parameters[18]) - minus_g1_vx_leg2 * t58 - (t61 + parameters[8]);
+        let t65 = pose[0] + t5 - 0.25980762113533157;
+        let t68 = pose[1] + t14 + 0.15;
+        let t70 = 0.5 * t65 + 0.8660254037844386 * t68;
+        let t77 = 8.650519031141869 * (t70 * t70 - (t65 * t65 + t68 * t68 - 0.1156));
+        ::overact::guard::reach(t77, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t77);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t81 = 1.0 / minus_s2_leg3;
-        let g2_vx_leg3 = 2.5471335405424664 * t81;
-        let t85 = 0.8660254037844386 * t63 - 0.5 * t70;
-        let c2_leg3 = 2.9411764705882355 * t85;
-        let t89 = 2.5471335405424664 * t85 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t89 * t81;
-        let t91 = c2_leg3 * minus_g1_vx_leg3;
-        let t110 = minus_g1_vx_leg3 * parameters[23] + minus_g1_vx_leg3 * parameters[22]
-            + minus_s2_leg3 * (t89 * parameters[30] - g2_vx_leg3 * parameters[29])
-            + c2_leg3 * (parameters[30] * t91 - g2_vx_leg3 * parameters[28]);
-        let t114 = parameters[36]
-            - (t57
+        let t79 = 1.0 / minus_s2_leg3;
+        let g2_vx_leg3 = 2.5471335405424664 * t79;
+        let t83 = 0.8660254037844386 * t65 - 0.5 * t68;
+        let c2_leg3 = 2.9411764705882355 * t83;
+        let t87 = 2.5471335405424664 * t83 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t87 * t79;
+        let t89 = c2_leg3 * minus_g1_vx_leg3;
+        let t108 = minus_g1_vx_leg3 * parameters[23] + minus_g1_vx_leg3 * parameters[22]
+            + minus_s2_leg3 * (t87 * parameters[30] - g2_vx_leg3 * parameters[29])
+            + c2_leg3 * (parameters[30] * t89 - g2_vx_leg3 * parameters[28]);
+        let t112 = parameters[36]
+            - (t63
                 + g2_vx_leg3
-                    * (parameters[28] * t91 - g2_vx_leg3 * parameters[27]
-                        + t89 * parameters[29]) - minus_g1_vx_leg3 * t110);
-        let t115 = 0.08 * c_phi;
-        let t117 = pose[1] + t115 - 0.3;
-        let c2_leg1 = 2.9411764705882355 * t117;
-        let t119 = 0.08 * s_phi;
-        let t120 = pose[0] - t119;
-        let t121 = t120 * t120;
-        let t126 = 8.650519031141869 * (t121 - (t121 + t117 * t117 - 0.1156));
-        ::overact::guard::reach(t126, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t126);
+                    * (parameters[28] * t89 - g2_vx_leg3 * parameters[27]
+                        + t87 * parameters[29]) - minus_g1_vx_leg3 * t108);
+        let t114 = pose[1] + t15 - 0.3;
+        let c2_leg1 = 2.9411764705882355 * t114;
+        let t118 = 8.650519031141869 * (0.1156 - t114 * t114);
+        ::overact::guard::reach(t118, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t118);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t128 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t128;
-        let minus_g1_vy_leg1 = t117 * g2_vy_leg1;
-        let t132 = c2_leg1 * minus_g1_vy_leg1;
-        let t144 = c2_leg1 * (g2_vy_leg1 * parameters[6] - parameters[8] * t132)
+        let t120 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t120;
+        let minus_g1_vy_leg1 = t114 * g2_vy_leg1;
+        let t124 = c2_leg1 * minus_g1_vy_leg1;
+        let t134 = c2_leg1 * (g2_vy_leg1 * parameters[6] - parameters[8] * t124)
             - minus_s2_leg1 * (c2_leg1 * parameters[8] - g2_vy_leg1 * parameters[7])
-            - (minus_g1_vy_leg1 * parameters[1] + minus_g1_vy_leg1 * parameters[0]);
-        let t147 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t27;
-        let minus_g1_vy_leg2 = t147 * t23;
-        let t149 = minus_c2_leg2 * minus_g1_vy_leg2;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t23;
-        let t155 = parameters[17] * t149 - minus_g2_vy_leg2 * parameters[16]
-            - t147 * parameters[18];
-        let t169 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
-            + minus_s2_leg2 * (minus_g2_vy_leg2 * parameters[18] + t147 * parameters[19])
+            - t61 * minus_g1_vy_leg1;
+        let t137 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t33;
+        let minus_g1_vy_leg2 = t137 * t29;
+        let t139 = minus_c2_leg2 * minus_g1_vy_leg2;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t29;
+        let t145 = parameters[17] * t139 - minus_g2_vy_leg2 * parameters[16]
+            - t137 * parameters[18];
+        let t159 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
+            + minus_s2_leg2 * (minus_g2_vy_leg2 * parameters[18] + t137 * parameters[19])
             + minus_c2_leg2
-                * (parameters[19] * t149 - minus_g2_vy_leg2 * parameters[17]);
-        let t175 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t85;
-        let g1_vy_leg3 = t175 * t81;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t81;
-        let t186 = c2_leg3 * g1_vy_leg3;
-        let t191 = g1_vy_leg3 * parameters[23] + g1_vy_leg3 * parameters[22]
+                * (parameters[19] * t139 - minus_g2_vy_leg2 * parameters[17]);
+        let t165 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t83;
+        let g1_vy_leg3 = t165 * t79;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t79;
+        let t176 = c2_leg3 * g1_vy_leg3;
+        let t181 = g1_vy_leg3 * parameters[23] + g1_vy_leg3 * parameters[22]
             - (minus_s2_leg3
-                * (minus_g2_vy_leg3 * parameters[29] - t175 * parameters[30])
-                + c2_leg3 * (minus_g2_vy_leg3 * parameters[28] - parameters[30] * t186));
-        let t197 = minus_g2_vy_leg3 * parameters[27] - parameters[28] * t186
-            - t175 * parameters[29];
-        let t200 = t144 + minus_g2_vx_leg2 * t155 - minus_g1_vx_leg2 * t169
-            + minus_g1_vx_leg3 * t191 + g2_vx_leg3 * t197;
-        let g1_wz_leg1 = t119 * minus_g1_vy_leg1 + t115;
-        let t209 = c2_leg1 * g1_wz_leg1;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t128);
-        let c3_leg1 = 2.9411764705882355 * (s_phi * t117) + c_phi * minus_s2_leg1;
-        let t221 = 0.08 * c3_leg1;
-        let t226 = g1_wz_leg1 * parameters[1] + g1_wz_leg1 * parameters[0]
-            + c2_leg1 * (parameters[8] * t209 - minus_g2_wz_leg1 * parameters[6])
-            - minus_s2_leg1 * (minus_g2_wz_leg1 * parameters[7] - parameters[8] * t221);
-        let minus_g1_wz_leg2 = t4 * minus_g1_vy_leg2 + t10 * minus_g1_vx_leg2;
-        let t230 = minus_c2_leg2 * minus_g1_wz_leg2;
-        let minus_g2_wz_leg2 = t4 * minus_g2_vy_leg2 + t10 * minus_g2_vx_leg2;
-        let t239 = t10 * t31 + t4 * t147;
-        let t241 = parameters[17] * t230 - minus_g2_wz_leg2 * parameters[16]
-            - parameters[18] * t239;
-        let t255 = minus_g1_wz_leg2 * parameters[12] + minus_g1_wz_leg2 * parameters[11]
-            + minus_s2_leg2 * (minus_g2_wz_leg2 * parameters[18] + parameters[19] * t239)
+                * (minus_g2_vy_leg3 * parameters[29] - t165 * parameters[30])
+                + c2_leg3 * (minus_g2_vy_leg3 * parameters[28] - parameters[30] * t176));
+        let t187 = minus_g2_vy_leg3 * parameters[27] - parameters[28] * t176
+            - t165 * parameters[29];
+        let t190 = t134 + minus_g2_vx_leg2 * t145 - minus_g1_vx_leg2 * t159
+            + minus_g1_vx_leg3 * t181 + g2_vx_leg3 * t187;
+        let t191 = 9.81 * s_phi;
+        let t193 = 9.81 * c_phi;
+        let c3_leg1 = s_phi * c2_leg1 + c_phi * minus_s2_leg1;
+        let t200 = 0.08 * c3_leg1;
+        let g1_wz_leg1 = t120 * t200;
+        let t203 = c2_leg1 * g1_wz_leg1;
+        let minus_g2_wz_leg1 = t6 * g2_vy_leg1;
+        let t214 = t61 * g1_wz_leg1
+            + c2_leg1 * (parameters[8] * t203 - minus_g2_wz_leg1 * parameters[6])
+            - minus_s2_leg1 * (minus_g2_wz_leg1 * parameters[7] - parameters[8] * t200);
+        let t217 = t16 * t37 + t7 * t137;
+        let minus_g1_wz_leg2 = t29 * t217;
+        let t219 = minus_c2_leg2 * minus_g1_wz_leg2;
+        let minus_g2_wz_leg2 = t7 * minus_g2_vy_leg2 + t16 * minus_g2_vx_leg2;
+        let t227 = parameters[17] * t219 - minus_g2_wz_leg2 * parameters[16]
+            - parameters[18] * t217;
+        let t241 = minus_g1_wz_leg2 * parameters[12] + minus_g1_wz_leg2 * parameters[11]
+            + minus_s2_leg2 * (minus_g2_wz_leg2 * parameters[18] + parameters[19] * t217)
             + minus_c2_leg2
-                * (parameters[19] * t230 - minus_g2_wz_leg2 * parameters[17]);
-        let g1_wz_leg3 = t61 * g1_vy_leg3 + t68 * minus_g1_vx_leg3;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t81)
-            + 0.2037706832433973 * (minus_s23_leg2 * t81);
-        let t273 = t68 * t89 + t61 * t175;
-        let t278 = c2_leg3 * g1_wz_leg3;
-        let t283 = g1_wz_leg3 * parameters[23] + g1_wz_leg3 * parameters[22]
+                * (parameters[19] * t219 - minus_g2_wz_leg2 * parameters[17]);
+        let t247 = t14 * t87 + t5 * t165;
+        let g1_wz_leg3 = t79 * t247;
+        let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t14 * g2_vx_leg3;
+        let t260 = c2_leg3 * g1_wz_leg3;
+        let t265 = g1_wz_leg3 * parameters[23] + g1_wz_leg3 * parameters[22]
             - (minus_s2_leg3
-                * (minus_g2_wz_leg3 * parameters[29] - parameters[30] * t273)
-                + c2_leg3 * (minus_g2_wz_leg3 * parameters[28] - parameters[30] * t278));
-        let t289 = minus_g2_wz_leg3 * parameters[27] - parameters[28] * t278
-            - parameters[29] * t273;
-        let t293 = c_phi * parameters[35] + s_phi * parameters[34] + t226
-            + minus_g2_vx_leg2 * t241 - minus_g1_vx_leg2 * t255 + minus_g1_vx_leg3 * t283
-            + g2_vx_leg3 * t289;
-        let t305 = g2_vy_leg1
-            * (g2_vy_leg1 * parameters[5] - parameters[6] * t132
-                - c2_leg1 * parameters[7]) - minus_g1_vy_leg1 * t144
-            - (minus_g2_vy_leg2 * t155 - minus_g1_vy_leg2 * t169);
-        let t315 = parameters[6] * t209 - minus_g2_wz_leg1 * parameters[5]
-            + parameters[7] * t221;
-        let t326 = g2_vy_leg1 * t315 - minus_g1_vy_leg1 * t226
-            - (minus_g2_vy_leg2 * t241 - minus_g1_vy_leg2 * t255) + g1_vy_leg3 * t283
-            + minus_g2_vy_leg3 * t289;
-        let t330 = t326 + c_phi * parameters[34] - s_phi * parameters[35];
-        let t341 = g1_wz_leg1 * t226 - minus_g2_wz_leg1 * t315
-            - (minus_g2_wz_leg2 * t241 - minus_g1_wz_leg2 * t255) + g1_wz_leg3 * t283
-            + minus_g2_wz_leg3 * t289;
+                * (minus_g2_wz_leg3 * parameters[29] - parameters[30] * t247)
+                + c2_leg3 * (minus_g2_wz_leg3 * parameters[28] - parameters[30] * t260));
+        let t271 = minus_g2_wz_leg3 * parameters[27] - parameters[28] * t260
+            - parameters[29] * t247;
+        let t275 = 0.1019367991845056 * (parameters[34] * t191 + parameters[35] * t193)
+            + t214 + minus_g2_vx_leg2 * t227 - minus_g1_vx_leg2 * t241
+            + minus_g1_vx_leg3 * t265 + g2_vx_leg3 * t271;
+        let t287 = g2_vy_leg1
+            * (g2_vy_leg1 * parameters[5] - parameters[6] * t124
+                - c2_leg1 * parameters[7]) - minus_g1_vy_leg1 * t134
+            - (minus_g2_vy_leg2 * t145 - minus_g1_vy_leg2 * t159);
+        let t297 = parameters[6] * t203 - minus_g2_wz_leg1 * parameters[5]
+            + parameters[7] * t200;
+        let t308 = g2_vy_leg1 * t297 - minus_g1_vy_leg1 * t214
+            - (minus_g2_vy_leg2 * t227 - minus_g1_vy_leg2 * t241) + g1_vy_leg3 * t265
+            + minus_g2_vy_leg3 * t271;
+        let t313 = t308
+            - 0.1019367991845056 * (parameters[35] * t191 - parameters[34] * t193);
+        let t324 = g1_wz_leg1 * t214 - minus_g2_wz_leg1 * t297
+            - (minus_g2_wz_leg2 * t227 - minus_g1_wz_leg2 * t241) + g1_wz_leg3 * t265
+            + minus_g2_wz_leg3 * t271;
         Ok([
-            [t114, -t200, -t293],
+            [t112, -t190, -t275],
             [
-                -t200, t305 + g1_vy_leg3 * t191 + minus_g2_vy_leg3 * t197 + parameters[36], t330,
+                -t190, t287 + g1_vy_leg3 * t181 + minus_g2_vy_leg3 * t187 + parameters[36], t313,
             ],
-            [-t293, t330, t341 + parameters[33]],
+            [-t275, t313, t324 + parameters[33]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -4508,7 +4429,7 @@ impl Planar3Prr {
     ///
     /// Output: 3.
     ///
-    /// 319 operations (128 additions, 188 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 330 intermediates.
+    /// 287 operations (118 additions, 166 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 298 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4537,12 +4458,13 @@ impl Planar3Prr {
         let t31 = t5 * twist[2];
         let t32 = twist[1] + t31;
         let rate_2_leg3 = g2_vx_leg3 * t28 - minus_g2_vy_leg3 * t32;
+        let t36 = 2.9411764705882355 * t25;
         let t37 = 0.08 * c_phi;
         let t38 = t37 * twist[2];
         let t39 = twist[2] * t38;
         let t42 = 0.8660254037844386 * t7 - 0.5 * t14;
         let t43 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t25 * (t39 - t42 * t43);
+        let minus_rate_dot_2_leg3 = t36 * (t39 - t42 * t43);
         let c2_leg3 = 2.9411764705882355 * t42;
         let t51 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t42;
         let t56 = 2.5471335405424664 * t42 - 0.5 * minus_s2_leg3;
@@ -4567,108 +4489,101 @@ impl Planar3Prr {
             - parameters[22] * minus_rate_dot_1_leg3 - t98;
         let t102 = 0.08 * s_phi;
         let t103 = t102 * twist[2];
+        let t104 = twist[2] * t103;
         let t106 = pose[1] + t37 - 0.3;
-        let t107 = pose[0] - t102;
-        let t108 = t107 * t107;
-        let t113 = 8.650519031141869 * (t108 - (t108 + t106 * t106 - 0.1156));
-        ::overact::guard::reach(t113, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t113);
+        let t109 = 8.650519031141869 * (0.1156 - t106 * t106);
+        ::overact::guard::reach(t109, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t109);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t115 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t115;
+        let t111 = 1.0 / minus_s2_leg1;
+        let g2_vy_leg1 = 2.9411764705882355 * t111;
         let minus_g1_vy_leg1 = t106 * g2_vy_leg1;
-        let t120 = twist[1] - t103;
-        let rate_2_leg1 = g2_vy_leg1 * t120;
-        let t122 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = twist[2] * t103 - minus_g1_vy_leg1 * t39
-            + t122 * (0.34 * t115);
-        let minus_rate_1_leg1 = twist[0] - t38 + minus_g1_vy_leg1 * t120;
+        let t116 = twist[1] - t103;
+        let rate_2_leg1 = g2_vy_leg1 * t116;
+        let t118 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t104 - minus_g1_vy_leg1 * t39 + t118 * (0.34 * t111);
+        let minus_rate_1_leg1 = twist[0] - t38 + minus_g1_vy_leg1 * t116;
         let c2_leg1 = 2.9411764705882355 * t106;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t106 * t122 - t39);
-        let t144 = c2_leg1 * minus_rate_dot_1_leg1;
-        let t148 = minus_s2_leg1 * minus_rate_dot_1_leg1;
-        let t155 = c2_leg1
-            * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t122
-                - parameters[8] * t144)
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t106 * t118 - t39);
+        let t140 = c2_leg1 * minus_rate_dot_1_leg1;
+        let t144 = minus_s2_leg1 * minus_rate_dot_1_leg1;
+        let t151 = c2_leg1
+            * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t118
+                - parameters[8] * t140)
             - minus_s2_leg1
-                * (parameters[8] * t148
-                    - (parameters[6] * t122 + parameters[7] * rate_dot_2_leg1));
-        let t156 = parameters[4]
+                * (parameters[8] * t144
+                    - (parameters[6] * t118 + parameters[7] * rate_dot_2_leg1));
+        let t152 = parameters[4]
             - (parameters[1] * minus_rate_dot_1_leg1 + parameters[2] * minus_rate_1_leg1
                 + ::overact::math::signed(parameters[3], minus_rate_1_leg1))
-            - parameters[0] * minus_rate_dot_1_leg1 + t155;
-        let t159 = 0.04 * s_phi - 0.06928203230275509 * c_phi;
-        let t161 = pose[0] + t159 + 0.25980762113533157;
-        let t165 = 0.06928203230275509 * s_phi + 0.04 * c_phi;
-        let t167 = pose[1] - t165 + 0.15;
-        let t169 = 0.8660254037844386 * t161 + 0.5 * t167;
-        let t173 = 0.5 * t161 - 0.8660254037844386 * t167;
-        let t180 = 8.650519031141869
-            * (t173 * t173 - (t161 * t161 + t167 * t167 - 0.1156));
-        ::overact::guard::reach(t180, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t180);
+            - parameters[0] * minus_rate_dot_1_leg1 + t151;
+        let t153 = t102 - t5;
+        let t155 = pose[0] + t153 + 0.25980762113533157;
+        let t157 = t12 + t37;
+        let t159 = pose[1] - t157 + 0.15;
+        let t161 = 0.8660254037844386 * t155 + 0.5 * t159;
+        let t165 = 0.5 * t155 - 0.8660254037844386 * t159;
+        let t172 = 8.650519031141869
+            * (t165 * t165 - (t155 * t155 + t159 * t159 - 0.1156));
+        ::overact::guard::reach(t172, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t172);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t183 = 2.5471335405424664 * t169 - 0.5 * minus_s2_leg2;
-        let t184 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t183 * t184;
-        let t186 = t159 * twist[2];
-        let t191 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t169;
-        let t192 = t165 * twist[2];
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t184;
-        let t197 = twist[0] + t192;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t184;
-        let t200 = twist[1] + t186;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t197 + minus_g2_vy_leg2 * t200;
-        let t203 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t205 = t183 * (twist[2] * t186) - t191 * (twist[2] * t192) - 0.34 * t203;
-        let rate_dot_1_leg2 = t184 * t205;
-        let minus_g1_vy_leg2 = t191 * t184;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t197 + minus_g1_vy_leg2 * t200;
-        let minus_c2_leg2 = 2.9411764705882355 * t169;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t184 * (t39 + t169 * t203);
-        let t227 = minus_c2_leg2 * rate_dot_1_leg2;
-        let t237 = minus_c2_leg2
-            * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t203
-                + parameters[19] * t227)
+        let t175 = 2.5471335405424664 * t161 - 0.5 * minus_s2_leg2;
+        let t176 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t175 * t176;
+        let t178 = t153 * twist[2];
+        let t183 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t161;
+        let t184 = t157 * twist[2];
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t176;
+        let t189 = twist[0] + t184;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t176;
+        let t192 = twist[1] + t178;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t189 + minus_g2_vy_leg2 * t192;
+        let t195 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t197 = t175 * (twist[2] * t178) - t183 * (twist[2] * t184) - 0.34 * t195;
+        let rate_dot_1_leg2 = t176 * t197;
+        let minus_g1_vy_leg2 = t183 * t176;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t189 + minus_g1_vy_leg2 * t192;
+        let minus_c2_leg2 = 2.9411764705882355 * t161;
+        let t212 = 2.9411764705882355 * t176;
+        let minus_rate_dot_2_leg2 = t212 * (t39 + t161 * t195);
+        let t219 = minus_c2_leg2 * rate_dot_1_leg2;
+        let t229 = minus_c2_leg2
+            * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t195
+                + parameters[19] * t219)
             - minus_s2_leg2
-                * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t203
-                    - parameters[19] * t205);
-        let t238 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
+                * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t195
+                    - parameters[19] * t197);
+        let t230 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
             - parameters[13] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
-            + t237;
-        let t248 = ::overact::math::signed(parameters[21], minus_rate_2_leg2 + twist[2]);
-        let t249 = parameters[18] * t205
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t227)
-            - ::overact::math::signed(parameters[20], minus_rate_2_leg2) - t248;
-        let c3_leg1 = 2.9411764705882355 * (s_phi * t106) + c_phi * minus_s2_leg1;
-        let s3_leg1 = s_phi * minus_s2_leg1 - 2.9411764705882355 * (c_phi * t106);
-        let t269 = 12.5
-            * (c3_leg1 * (0.34 * rate_dot_2_leg1 - t144)
-                - s3_leg1 * (t148 - 0.34 * t122));
-        let t270 = parameters[34] * t269;
-        let t272 = parameters[35] * t269;
-        let t275 = g2_vx_leg3 * t71 - minus_g1_vx_leg3 * t99
-            - (t156 + minus_g1_vx_leg2 * t238 + minus_g2_vx_leg2 * t249) + c_phi * t270
-            - s_phi * t272;
-        let t284 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t285 = parameters[5] * rate_dot_2_leg1 - parameters[6] * t144
-            - parameters[7] * t148 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t284;
-        let t296 = g2_vy_leg1 * t285 - minus_g1_vy_leg1 * t156
-            - (minus_g1_vy_leg2 * t238 + minus_g2_vy_leg2 * t249) + g1_vy_leg3 * t99
+            + t229;
+        let t240 = ::overact::math::signed(parameters[21], minus_rate_2_leg2 + twist[2]);
+        let t241 = parameters[18] * t197
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t219)
+            - ::overact::math::signed(parameters[20], minus_rate_2_leg2) - t240;
+        let t246 = 12.5 * t104;
+        let t248 = 12.5 * t39;
+        let t251 = g2_vx_leg3 * t71 - minus_g1_vx_leg3 * t99
+            - (t152 + minus_g1_vx_leg2 * t230 + minus_g2_vx_leg2 * t241)
+            + parameters[35] * t246 - parameters[34] * t248;
+        let t260 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t262 = g2_vy_leg1
+            * (parameters[5] * rate_dot_2_leg1 - parameters[6] * t140
+                - parameters[7] * t144
+                + ::overact::math::signed(parameters[9], rate_2_leg1) - t260);
+        let t272 = t262 - minus_g1_vy_leg1 * t152
+            - (minus_g1_vy_leg2 * t230 + minus_g2_vy_leg2 * t241) + g1_vy_leg3 * t99
             - minus_g2_vy_leg3 * t71;
         let g1_wz_leg1 = t102 * minus_g1_vy_leg1 + t37;
-        let minus_g2_wz_leg1 = 0.23529411764705882 * (s_phi * t115);
-        let minus_g1_wz_leg2 = t159 * minus_g1_vy_leg2 + t165 * minus_g1_vx_leg2;
-        let minus_g2_wz_leg2 = t159 * minus_g2_vy_leg2 + t165 * minus_g2_vx_leg2;
+        let minus_g1_wz_leg2 = t153 * minus_g1_vy_leg2 + t157 * minus_g1_vx_leg2;
+        let minus_g2_wz_leg2 = t102 * t212;
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t12 * minus_g1_vx_leg3;
-        let minus_g2_wz_leg3 = 0.11764705882352941 * (minus_c23_leg2 * t25)
-            + 0.2037706832433973 * (minus_s23_leg2 * t25);
-        let t332 = g1_wz_leg1 * t156 - minus_g2_wz_leg1 * t285 + t284 + t248
-            - (minus_g1_wz_leg2 * t238 + minus_g2_wz_leg2 * t249) + g1_wz_leg3 * t99
+        let minus_g2_wz_leg3 = t36 * t102;
+        let t300 = g1_wz_leg1 * t152 - t102 * t262 + t260 + t240
+            - (minus_g1_wz_leg2 * t230 + minus_g2_wz_leg2 * t241) + g1_wz_leg3 * t99
             - minus_g2_wz_leg3 * t71 + t70;
-        Ok([t275, t296 + s_phi * t270 + c_phi * t272, t332])
+        Ok([t251, t272 - (parameters[34] * t246 + parameters[35] * t248), t300])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///

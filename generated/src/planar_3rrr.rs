@@ -186,14 +186,16 @@ impl Planar3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 169 operations (73 additions, 93 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 182 intermediates.
+    /// 165 operations (73 additions, 89 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 178 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = pose[0] - 0.1 * s_phi;
-        let t7 = pose[1] + 0.1 * c_phi - 0.35;
+        let t2 = 0.1 * s_phi;
+        let t3 = pose[0] - t2;
+        let t5 = 0.1 * c_phi;
+        let t7 = pose[1] + t5 - 0.35;
         let t10 = t7 * t7 + t3 * t3;
         let t12 = 0.04 / t10 - 0.25;
         ::overact::guard::reach(t12, "leg1")?;
@@ -206,42 +208,44 @@ impl Planar3Rrr {
         let s12_leg1 = 5.0 * (t15 - t3);
         let minus_s3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
         let c3_leg1 = s_phi * c12_leg1 - c_phi * s12_leg1;
-        let t60 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t62 = pose[0] + t60 + 0.3031088913245535;
-        let t66 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t68 = pose[1] - t66 + 0.175;
-        let t70 = 0.5 * t62 - 0.8660254037844386 * t68;
-        let t74 = 0.8660254037844386 * t62 + 0.5 * t68;
-        let t77 = t74 * t74 + t70 * t70;
-        let t79 = 0.04 / t77 - 0.25;
-        ::overact::guard::reach(t79, "leg2")?;
-        let t80 = ::overact::math::sqrt(t79);
-        let t82 = 0.5 * t70 + t74 * t80;
-        let t86 = t70 * t80 - 0.5 * t74;
-        let t95 = t77 * t80;
-        let t97 = t77 - 0.08;
-        let minus_c12_leg2 = 5.0 * (t74 + t86);
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let s12_leg2 = 5.0 * (t70 - t82);
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t61 = 0.1 * minus_c123_leg2;
+        let t62 = t2 - t61;
+        let t64 = pose[0] + t62 + 0.3031088913245535;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t69 = 0.1 * minus_s123_leg2;
+        let t70 = t5 + t69;
+        let t72 = pose[1] - t70 + 0.175;
+        let t74 = 0.5 * t64 - 0.8660254037844386 * t72;
+        let t78 = 0.8660254037844386 * t64 + 0.5 * t72;
+        let t81 = t78 * t78 + t74 * t74;
+        let t83 = 0.04 / t81 - 0.25;
+        ::overact::guard::reach(t83, "leg2")?;
+        let t84 = ::overact::math::sqrt(t83);
+        let t86 = 0.5 * t74 + t78 * t84;
+        let t90 = t74 * t84 - 0.5 * t78;
+        let t99 = t81 * t84;
+        let t101 = t81 - 0.08;
+        let minus_c12_leg2 = 5.0 * (t78 + t90);
+        let s12_leg2 = 5.0 * (t74 - t86);
         let s3_leg2 = minus_c12_leg2 * minus_s123_leg2 + s12_leg2 * minus_c123_leg2;
         let c3_leg2 = minus_c12_leg2 * minus_c123_leg2 - s12_leg2 * minus_s123_leg2;
-        let t132 = pose[0] + 0.1 * minus_c123_leg2 - 0.3031088913245535;
-        let t136 = pose[1] + 0.1 * minus_s123_leg2 + 0.175;
-        let t138 = 0.5 * t132 + 0.8660254037844386 * t136;
-        let t142 = 0.8660254037844386 * t132 - 0.5 * t136;
-        let t145 = t142 * t142 + t138 * t138;
-        let t147 = 0.04 / t145 - 0.25;
-        ::overact::guard::reach(t147, "leg3")?;
-        let t148 = ::overact::math::sqrt(t147);
-        let t150 = 0.5 * t138 - t142 * t148;
-        let t154 = 0.5 * t142 + t138 * t148;
-        let t163 = t145 * t148;
-        let t165 = t145 - 0.08;
-        let t174 = t142 - t154;
-        let t176 = t138 - t150;
-        let t178 = t66 * t174 + t60 * t176;
-        let t182 = t66 * t176 - t60 * t174;
+        let t129 = pose[0] + t61 - 0.3031088913245535;
+        let t132 = pose[1] + t69 + 0.175;
+        let t134 = 0.5 * t129 + 0.8660254037844386 * t132;
+        let t138 = 0.8660254037844386 * t129 - 0.5 * t132;
+        let t141 = t138 * t138 + t134 * t134;
+        let t143 = 0.04 / t141 - 0.25;
+        ::overact::guard::reach(t143, "leg3")?;
+        let t144 = ::overact::math::sqrt(t143);
+        let t146 = 0.5 * t134 - t138 * t144;
+        let t150 = 0.5 * t138 + t134 * t144;
+        let t159 = t141 * t144;
+        let t161 = t141 - 0.08;
+        let t170 = t138 - t150;
+        let t172 = t134 - t146;
+        let t174 = t70 * t170 + t62 * t172;
+        let t178 = t70 * t172 - t62 * t170;
         Ok([
             ::overact::math::atan2(
                 3.1249999999999982 * t15 - 3.903123748999 * t19,
@@ -256,28 +260,28 @@ impl Planar3Rrr {
                 0.7806247497998007 * c3_leg1 - 0.6249999999999989 * minus_s3_leg1,
             ) - 5.608053774242556,
             ::overact::math::atan2(
-                -(3.1249999999999964 * t82 + 3.903123748999002 * t86),
-                3.903123748999002 * t82 - 3.1249999999999964 * t86,
+                -(3.1249999999999964 * t86 + 3.903123748999002 * t90),
+                3.903123748999002 * t86 - 3.1249999999999964 * t90,
             ) + 2.2459278597319274,
             ::overact::math::atan2(
-                -(5.468750000000046 * t95 + 12.197261715621867 * t97),
-                24.394523431243734 * t95 - 2.734375000000023 * t97,
+                -(5.468750000000046 * t99 + 12.197261715621867 * t101),
+                24.394523431243734 * t99 - 2.734375000000023 * t101,
             ) + 1.7913295877157318,
             ::overact::math::atan2(
                 0.15095350246537265 * s3_leg2 + 0.9885408641494983 * c3_leg2,
                 0.15095350246537265 * c3_leg2 - 0.9885408641494983 * s3_leg2,
             ) - 7.702448876635752,
             ::overact::math::atan2(
-                -(3.125 * t150 + 3.9031237489989987 * t154),
-                3.9031237489989987 * t150 - 3.125 * t154,
+                -(3.125 * t146 + 3.9031237489989987 * t150),
+                3.9031237489989987 * t146 - 3.125 * t150,
             ) + 2.2459278597319283,
             ::overact::math::atan2(
-                -(5.46875000000004 * t163 + 12.197261715621867 * t165),
-                24.394523431243734 * t163 - 2.73437500000002 * t165,
+                -(5.46875000000004 * t159 + 12.197261715621867 * t161),
+                24.394523431243734 * t159 - 2.73437500000002 * t161,
             ) + 1.7913295877157316,
             ::overact::math::atan2(
-                -(46.578912613258666 * t178 + 18.177043207474984 * t182),
-                18.177043207474984 * t178 - 46.578912613258666 * t182,
+                -(46.578912613258666 * t174 + 18.177043207474984 * t178),
+                18.177043207474984 * t174 - 46.578912613258666 * t178,
             ) - 9.796843979028948,
         ])
     }
@@ -288,52 +292,55 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 93 operations (40 additions, 50 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 101 intermediates.
+    /// 89 operations (40 additions, 46 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 97 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = pose[0] - 0.1 * s_phi;
-        let t7 = pose[1] + 0.1 * c_phi - 0.35;
+        let t2 = 0.1 * s_phi;
+        let t3 = pose[0] - t2;
+        let t5 = 0.1 * c_phi;
+        let t7 = pose[1] + t5 - 0.35;
         let t12 = 0.04 / (t7 * t7 + t3 * t3) - 0.25;
         ::overact::guard::reach(t12, "leg1")?;
         let t13 = ::overact::math::sqrt(t12);
         let t15 = 0.5 * t3 + t7 * t13;
         let t19 = 0.5 * t7 - t3 * t13;
-        let t32 = pose[0] + 0.05 * s_phi - 0.08660254037844387 * c_phi
-            + 0.3031088913245535;
-        let t38 = pose[1] - (0.08660254037844387 * s_phi + 0.05 * c_phi) + 0.175;
-        let t40 = 0.5 * t32 - 0.8660254037844386 * t38;
-        let t44 = 0.8660254037844386 * t32 + 0.5 * t38;
-        let t49 = 0.04 / (t44 * t44 + t40 * t40) - 0.25;
-        ::overact::guard::reach(t49, "leg2")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let t52 = 0.5 * t40 + t44 * t50;
-        let t56 = t40 * t50 - 0.5 * t44;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t70 = pose[0] + 0.1 * minus_c123_leg2 - 0.3031088913245535;
+        let t31 = 0.1 * minus_c123_leg2;
+        let t34 = pose[0] + t2 - t31 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t77 = pose[1] + 0.1 * minus_s123_leg2 + 0.175;
-        let t79 = 0.5 * t70 + 0.8660254037844386 * t77;
-        let t83 = 0.8660254037844386 * t70 - 0.5 * t77;
-        let t88 = 0.04 / (t83 * t83 + t79 * t79) - 0.25;
-        ::overact::guard::reach(t88, "leg3")?;
-        let t89 = ::overact::math::sqrt(t88);
-        let t91 = 0.5 * t79 - t83 * t89;
-        let t95 = 0.5 * t83 + t79 * t89;
+        let t39 = 0.1 * minus_s123_leg2;
+        let t42 = pose[1] - (t5 + t39) + 0.175;
+        let t44 = 0.5 * t34 - 0.8660254037844386 * t42;
+        let t48 = 0.8660254037844386 * t34 + 0.5 * t42;
+        let t53 = 0.04 / (t48 * t48 + t44 * t44) - 0.25;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t56 = 0.5 * t44 + t48 * t54;
+        let t60 = t44 * t54 - 0.5 * t48;
+        let t70 = pose[0] + t31 - 0.3031088913245535;
+        let t73 = pose[1] + t39 + 0.175;
+        let t75 = 0.5 * t70 + 0.8660254037844386 * t73;
+        let t79 = 0.8660254037844386 * t70 - 0.5 * t73;
+        let t84 = 0.04 / (t79 * t79 + t75 * t75) - 0.25;
+        ::overact::guard::reach(t84, "leg3")?;
+        let t85 = ::overact::math::sqrt(t84);
+        let t87 = 0.5 * t75 - t79 * t85;
+        let t91 = 0.5 * t79 + t75 * t85;
         Ok([
             ::overact::math::atan2(
                 3.1249999999999982 * t15 - 3.903123748999 * t19,
                 -(3.1249999999999982 * t19 + 3.903123748999 * t15),
             ) + 2.245927859731928,
             ::overact::math::atan2(
-                -(3.1249999999999964 * t52 + 3.903123748999002 * t56),
-                3.903123748999002 * t52 - 3.1249999999999964 * t56,
+                -(3.1249999999999964 * t56 + 3.903123748999002 * t60),
+                3.903123748999002 * t56 - 3.1249999999999964 * t60,
             ) + 2.2459278597319274,
             ::overact::math::atan2(
-                -(3.125 * t91 + 3.9031237489989987 * t95),
-                3.9031237489989987 * t91 - 3.125 * t95,
+                -(3.125 * t87 + 3.9031237489989987 * t91),
+                3.9031237489989987 * t87 - 3.125 * t91,
             ) + 2.2459278597319283,
         ])
     }
@@ -344,7 +351,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 111 operations (44 additions, 61 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 107 intermediates.
+    /// 101 operations (38 additions, 57 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 97 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -358,50 +365,50 @@ impl Planar3Rrr {
         let t12 = 0.04 / t10 - 0.25;
         ::overact::guard::reach(t12, "leg1")?;
         let t13 = ::overact::math::sqrt(t12);
-        let t17 = t10 * t13;
-        ::overact::guard::leg(t17, 0.03903123748998999, "leg1")?;
-        let t18 = 1.0 / t17;
-        let minus_g1_vx_leg1 = (0.5 * t3 + t7 * t13 - t3) * t18;
-        let t22 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t24 = pose[0] + t22 + 0.3031088913245535;
-        let t28 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t30 = pose[1] - t28 + 0.175;
-        let t32 = 0.8660254037844386 * t24 + 0.5 * t30;
-        let t35 = 0.5 * t24 - 0.8660254037844386 * t30;
-        let t38 = t32 * t32 + t35 * t35;
-        let t40 = 0.04 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg2")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t45 = t32 + t35 * t41 - 0.5 * t32;
-        let t50 = t35 - (0.5 * t35 + t32 * t41);
-        let t53 = t38 * t41;
-        ::overact::guard::leg(t53, 0.03903123748998999, "leg2")?;
-        let t54 = 0.2 / t53;
-        let g1_vx_leg2 = (4.330127018922193 * t45 + 2.5 * t50) * t54;
+        let t16 = t10 * t13;
+        ::overact::guard::leg(t16, 0.03903123748998999, "leg1")?;
+        let t17 = 1.0 / t16;
+        let minus_g1_vx_leg1 = (t7 * t13 - 0.5 * t3) * t17;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t59 = 0.1 * minus_c123_leg2;
-        let t61 = pose[0] + t59 - 0.3031088913245535;
+        let t22 = 0.1 * minus_c123_leg2;
+        let t23 = t2 - t22;
+        let t25 = pose[0] + t23 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t66 = 0.1 * minus_s123_leg2;
-        let t68 = pose[1] + t66 + 0.175;
-        let t70 = 0.8660254037844386 * t61 - 0.5 * t68;
-        let t74 = 0.5 * t61 + 0.8660254037844386 * t68;
-        let t77 = t70 * t70 + t74 * t74;
-        let t79 = 0.04 / t77 - 0.25;
-        ::overact::guard::reach(t79, "leg3")?;
-        let t80 = ::overact::math::sqrt(t79);
-        let t83 = t70 - (0.5 * t70 + t74 * t80);
-        let t88 = t74 - (0.5 * t74 - t70 * t80);
-        let t91 = t77 * t80;
-        ::overact::guard::leg(t91, 0.03903123748998999, "leg3")?;
-        let t92 = 0.2 / t91;
-        let g1_vx_leg3 = (4.330127018922193 * t83 + 2.5 * t88) * t92;
-        let g1_vy_leg1 = (t7 - (0.5 * t7 - t3 * t13)) * t18;
-        let minus_g1_vy_leg2 = (4.330127018922193 * t50 - 2.5 * t45) * t54;
-        let minus_g1_vy_leg3 = (2.5 * t83 - 4.330127018922193 * t88) * t92;
+        let t30 = 0.1 * minus_s123_leg2;
+        let t31 = t5 + t30;
+        let t33 = pose[1] - t31 + 0.175;
+        let t35 = 0.5 * t25 - 0.8660254037844386 * t33;
+        let t38 = 0.8660254037844386 * t25 + 0.5 * t33;
+        let t41 = t38 * t38 + t35 * t35;
+        let t43 = 0.04 / t41 - 0.25;
+        ::overact::guard::reach(t43, "leg2")?;
+        let t44 = ::overact::math::sqrt(t43);
+        let t47 = t35 * t44 + 0.5 * t38;
+        let t51 = 0.5 * t35 - t38 * t44;
+        let t54 = t41 * t44;
+        ::overact::guard::leg(t54, 0.03903123748998999, "leg2")?;
+        let t55 = 0.2 / t54;
+        let g1_vx_leg2 = (4.330127018922193 * t47 + 2.5 * t51) * t55;
+        let t58 = pose[0] + t22 - 0.3031088913245535;
+        let t61 = pose[1] + t30 + 0.175;
+        let t63 = 0.8660254037844386 * t58 - 0.5 * t61;
+        let t67 = 0.5 * t58 + 0.8660254037844386 * t61;
+        let t70 = t63 * t63 + t67 * t67;
+        let t72 = 0.04 / t70 - 0.25;
+        ::overact::guard::reach(t72, "leg3")?;
+        let t73 = ::overact::math::sqrt(t72);
+        let t75 = 0.5 * t63 - t67 * t73;
+        let t79 = 0.5 * t67 + t63 * t73;
+        let t82 = t70 * t73;
+        ::overact::guard::leg(t82, 0.03903123748998999, "leg3")?;
+        let t83 = 0.2 / t82;
+        let g1_vx_leg3 = (4.330127018922193 * t75 + 2.5 * t79) * t83;
+        let g1_vy_leg1 = (0.5 * t7 + t3 * t13) * t17;
+        let minus_g1_vy_leg2 = (4.330127018922193 * t51 - 2.5 * t47) * t55;
+        let minus_g1_vy_leg3 = (2.5 * t75 - 4.330127018922193 * t79) * t83;
         let g1_wz_leg1 = t5 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
-        let g1_wz_leg2 = t28 * g1_vx_leg2 - t22 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t59 * minus_g1_vy_leg3 + t66 * g1_vx_leg3;
+        let g1_wz_leg2 = t31 * g1_vx_leg2 - t23 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t22 * minus_g1_vy_leg3 + t30 * g1_vx_leg3;
         Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1, g1_wz_leg1],
             [g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
@@ -463,7 +470,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 200 operations (78 additions, 113 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 196 intermediates.
+    /// 190 operations (72 additions, 109 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 186 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -477,88 +484,88 @@ impl Planar3Rrr {
         let t12 = 0.04 / t10 - 0.25;
         ::overact::guard::reach(t12, "leg1")?;
         let t13 = ::overact::math::sqrt(t12);
-        let t17 = t10 * t13;
-        ::overact::guard::leg(t17, 0.03903123748998999, "leg1")?;
-        let t18 = 1.0 / t17;
-        let minus_g1_vx_leg1 = (0.5 * t3 + t7 * t13 - t3) * t18;
-        let g1_vy_leg1 = (t7 - (0.5 * t7 - t3 * t13)) * t18;
-        let t28 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
+        let t16 = t10 * t13;
+        ::overact::guard::leg(t16, 0.03903123748998999, "leg1")?;
+        let t17 = 1.0 / t16;
+        let minus_g1_vx_leg1 = (t7 * t13 - 0.5 * t3) * t17;
+        let g1_vy_leg1 = (0.5 * t7 + t3 * t13) * t17;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t27 = 0.1 * minus_c123_leg2;
+        let t28 = t2 - t27;
         let t30 = pose[0] + t28 + 0.3031088913245535;
-        let t34 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t36 = pose[1] - t34 + 0.175;
-        let t38 = 0.8660254037844386 * t30 + 0.5 * t36;
-        let t41 = 0.5 * t30 - 0.8660254037844386 * t36;
-        let t44 = t38 * t38 + t41 * t41;
-        let t46 = 0.04 / t44 - 0.25;
-        ::overact::guard::reach(t46, "leg2")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t51 = t38 + t41 * t47 - 0.5 * t38;
-        let t56 = t41 - (0.5 * t41 + t38 * t47);
-        let t59 = t44 * t47;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t35 = 0.1 * minus_s123_leg2;
+        let t36 = t5 + t35;
+        let t38 = pose[1] - t36 + 0.175;
+        let t40 = 0.5 * t30 - 0.8660254037844386 * t38;
+        let t43 = 0.8660254037844386 * t30 + 0.5 * t38;
+        let t46 = t43 * t43 + t40 * t40;
+        let t48 = 0.04 / t46 - 0.25;
+        ::overact::guard::reach(t48, "leg2")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let t52 = t40 * t49 + 0.5 * t43;
+        let t56 = 0.5 * t40 - t43 * t49;
+        let t59 = t46 * t49;
         ::overact::guard::leg(t59, 0.03903123748998999, "leg2")?;
         let t60 = 0.2 / t59;
-        let g1_vx_leg2 = (4.330127018922193 * t51 + 2.5 * t56) * t60;
-        let minus_g1_vy_leg2 = (4.330127018922193 * t56 - 2.5 * t51) * t60;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t71 = 0.1 * minus_c123_leg2;
-        let t73 = pose[0] + t71 - 0.3031088913245535;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t78 = 0.1 * minus_s123_leg2;
-        let t80 = pose[1] + t78 + 0.175;
-        let t82 = 0.8660254037844386 * t73 - 0.5 * t80;
-        let t86 = 0.5 * t73 + 0.8660254037844386 * t80;
-        let t89 = t82 * t82 + t86 * t86;
-        let t91 = 0.04 / t89 - 0.25;
-        ::overact::guard::reach(t91, "leg3")?;
-        let t92 = ::overact::math::sqrt(t91);
-        let t95 = t82 - (0.5 * t82 + t86 * t92);
-        let t100 = t86 - (0.5 * t86 - t82 * t92);
-        let t103 = t89 * t92;
-        ::overact::guard::leg(t103, 0.03903123748998999, "leg3")?;
-        let t104 = 0.2 / t103;
-        let g1_vx_leg3 = (4.330127018922193 * t95 + 2.5 * t100) * t104;
-        let minus_g1_vy_leg3 = (2.5 * t95 - 4.330127018922193 * t100) * t104;
-        let t111 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let g1_vx_leg2 = (4.330127018922193 * t52 + 2.5 * t56) * t60;
+        let minus_g1_vy_leg2 = (4.330127018922193 * t56 - 2.5 * t52) * t60;
+        let t69 = pose[0] + t27 - 0.3031088913245535;
+        let t72 = pose[1] + t35 + 0.175;
+        let t74 = 0.8660254037844386 * t69 - 0.5 * t72;
+        let t78 = 0.5 * t69 + 0.8660254037844386 * t72;
+        let t81 = t74 * t74 + t78 * t78;
+        let t83 = 0.04 / t81 - 0.25;
+        ::overact::guard::reach(t83, "leg3")?;
+        let t84 = ::overact::math::sqrt(t83);
+        let t86 = 0.5 * t74 - t78 * t84;
+        let t90 = 0.5 * t78 + t74 * t84;
+        let t93 = t81 * t84;
+        ::overact::guard::leg(t93, 0.03903123748998999, "leg3")?;
+        let t94 = 0.2 / t93;
+        let g1_vx_leg3 = (4.330127018922193 * t86 + 2.5 * t90) * t94;
+        let minus_g1_vy_leg3 = (2.5 * t86 - 4.330127018922193 * t90) * t94;
+        let t101 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t116 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t106 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t116, 39.38461538461539, "actuators")?;
-        let t117 = 1.0 / t116;
-        let t118 = t111 * t117;
-        let t125 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t111 * t118;
-        ::overact::guard::platform(t125, 39.384615384615394, "actuators")?;
-        let t126 = 1.0 / t125;
-        let t128 = g1_vy_leg1 - minus_g1_vx_leg1 * t118;
+        ::overact::guard::platform(t106, 39.38461538461539, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t108 = t101 * t107;
+        let t115 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t101 * t108;
+        ::overact::guard::platform(t115, 39.384615384615394, "actuators")?;
+        let t116 = 1.0 / t115;
+        let t118 = g1_vy_leg1 - minus_g1_vx_leg1 * t108;
         let g1_wz_leg1 = t5 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
-        let g1_wz_leg2 = t34 * g1_vx_leg2 - t28 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t71 * minus_g1_vy_leg3 + t78 * g1_vx_leg3;
-        let t148 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let g1_wz_leg2 = t36 * g1_vx_leg2 - t28 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t27 * minus_g1_vy_leg3 + t35 * g1_vx_leg3;
+        let t138 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t149 = t148 * t117;
-        let t151 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t111 * t149;
-        let t152 = t151 * t126;
-        let t161 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t148 * t149 - t151 * t152;
-        ::overact::guard::platform(t161, 0.4800000000000003, "actuators")?;
-        let t162 = 1.0 / t161;
-        let t167 = t162 * (g1_wz_leg1 + minus_g1_vx_leg1 * t149 - t152 * t128);
-        let t169 = t126 * t128 - t152 * t167;
-        let t177 = g1_vx_leg2 * t118 - minus_g1_vy_leg2;
-        let t183 = t162 * (g1_wz_leg2 - g1_vx_leg2 * t149 - t152 * t177);
-        let t185 = t126 * t177 - t152 * t183;
-        let t192 = g1_vx_leg3 * t118 - minus_g1_vy_leg3;
-        let t198 = t162 * (minus_g1_wz_leg3 + g1_vx_leg3 * t149 + t152 * t192);
-        let t200 = t126 * t192 + t152 * t198;
+        let t139 = t138 * t107;
+        let t141 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t101 * t139;
+        let t142 = t141 * t116;
+        let t151 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t138 * t139 - t141 * t142;
+        ::overact::guard::platform(t151, 0.4800000000000003, "actuators")?;
+        let t152 = 1.0 / t151;
+        let t157 = t152 * (g1_wz_leg1 + minus_g1_vx_leg1 * t139 - t142 * t118);
+        let t159 = t116 * t118 - t142 * t157;
+        let t167 = g1_vx_leg2 * t108 - minus_g1_vy_leg2;
+        let t173 = t152 * (g1_wz_leg2 - g1_vx_leg2 * t139 - t142 * t167);
+        let t175 = t116 * t167 - t142 * t173;
+        let t182 = g1_vx_leg3 * t108 - minus_g1_vy_leg3;
+        let t188 = t152 * (minus_g1_wz_leg3 + g1_vx_leg3 * t139 + t142 * t182);
+        let t190 = t116 * t182 + t142 * t188;
         Ok([
             [
-                t118 * t169 - minus_g1_vx_leg1 * t117 - t149 * t167,
-                g1_vx_leg2 * t117 + t118 * t185 - t149 * t183,
-                g1_vx_leg3 * t117 + t118 * t200 + t149 * t198,
+                t108 * t159 - minus_g1_vx_leg1 * t107 - t139 * t157,
+                g1_vx_leg2 * t107 + t108 * t175 - t139 * t173,
+                g1_vx_leg3 * t107 + t108 * t190 + t139 * t188,
             ],
-            [t169, t185, t200],
-            [t167, t183, -t198],
+            [t159, t175, t190],
+            [t157, t173, -t188],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -721,7 +728,7 @@ impl Planar3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 156 operations (63 additions, 87 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 152 intermediates.
+    /// 152 operations (63 additions, 83 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 148 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -751,58 +758,58 @@ impl Planar3Rrr {
         let minus_g2_vx_leg1 = t25 * t18;
         let minus_g2_vy_leg1 = t15 * t18;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t29 + minus_g2_vy_leg1 * t21;
-        let t41 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t43 = pose[0] + t41 + 0.3031088913245535;
-        let t47 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t49 = pose[1] - t47 + 0.175;
-        let t51 = 0.8660254037844386 * t43 + 0.5 * t49;
-        let t54 = 0.5 * t43 - 0.8660254037844386 * t49;
-        let t57 = t51 * t51 + t54 * t54;
-        let t59 = 0.04 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg2")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t63 = t54 * t60 - 0.5 * t51;
-        let t64 = t51 + t63;
-        let t68 = 0.5 * t54 + t51 * t60;
-        let t69 = t54 - t68;
-        let t72 = t57 * t60;
-        ::overact::guard::leg(t72, 0.03903123748998999, "leg2")?;
-        let t73 = 0.2 / t72;
-        let g1_vx_leg2 = (4.330127018922193 * t64 + 2.5 * t69) * t73;
-        let t76 = twist[0] + t47 * twist[2];
-        let minus_g1_vy_leg2 = (4.330127018922193 * t69 - 2.5 * t64) * t73;
-        let t83 = twist[1] + t41 * twist[2];
-        let rate_1_leg2 = g1_vx_leg2 * t76 - minus_g1_vy_leg2 * t83;
-        let g2_vy_leg2 = (4.330127018922193 * t68 + 2.5 * t63) * t73;
-        let minus_g2_vx_leg2 = (2.5 * t68 - 4.330127018922193 * t63) * t73;
-        let rate_2_leg2 = g2_vy_leg2 * t83 - minus_g2_vx_leg2 * t76;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t102 = 0.1 * minus_c123_leg2;
-        let t104 = pose[0] + t102 - 0.3031088913245535;
+        let t42 = 0.1 * minus_c123_leg2;
+        let t43 = t6 - t42;
+        let t45 = pose[0] + t43 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t109 = 0.1 * minus_s123_leg2;
-        let t111 = pose[1] + t109 + 0.175;
-        let t113 = 0.8660254037844386 * t104 - 0.5 * t111;
-        let t117 = 0.5 * t104 + 0.8660254037844386 * t111;
-        let t120 = t113 * t113 + t117 * t117;
-        let t122 = 0.04 / t120 - 0.25;
-        ::overact::guard::reach(t122, "leg3")?;
-        let t123 = ::overact::math::sqrt(t122);
-        let t125 = 0.5 * t113 + t117 * t123;
-        let t126 = t113 - t125;
-        let t130 = 0.5 * t117 - t113 * t123;
-        let t131 = t117 - t130;
-        let t134 = t120 * t123;
-        ::overact::guard::leg(t134, 0.03903123748998999, "leg3")?;
-        let t135 = 0.2 / t134;
-        let g1_vx_leg3 = (4.330127018922193 * t126 + 2.5 * t131) * t135;
-        let t138 = twist[0] - t109 * twist[2];
-        let minus_g1_vy_leg3 = (2.5 * t126 - 4.330127018922193 * t131) * t135;
-        let t145 = twist[1] + t102 * twist[2];
-        let rate_1_leg3 = g1_vx_leg3 * t138 - minus_g1_vy_leg3 * t145;
-        let g2_vy_leg3 = (2.5 * t125 - 4.330127018922193 * t130) * t135;
-        let minus_g2_vx_leg3 = (4.330127018922193 * t125 + 2.5 * t130) * t135;
-        let rate_2_leg3 = g2_vy_leg3 * t145 - minus_g2_vx_leg3 * t138;
+        let t50 = 0.1 * minus_s123_leg2;
+        let t51 = t2 + t50;
+        let t53 = pose[1] - t51 + 0.175;
+        let t55 = 0.8660254037844386 * t45 + 0.5 * t53;
+        let t58 = 0.5 * t45 - 0.8660254037844386 * t53;
+        let t61 = t55 * t55 + t58 * t58;
+        let t63 = 0.04 / t61 - 0.25;
+        ::overact::guard::reach(t63, "leg2")?;
+        let t64 = ::overact::math::sqrt(t63);
+        let t67 = t58 * t64 - 0.5 * t55;
+        let t68 = t55 + t67;
+        let t72 = 0.5 * t58 + t55 * t64;
+        let t73 = t58 - t72;
+        let t76 = t61 * t64;
+        ::overact::guard::leg(t76, 0.03903123748998999, "leg2")?;
+        let t77 = 0.2 / t76;
+        let g1_vx_leg2 = (4.330127018922193 * t68 + 2.5 * t73) * t77;
+        let t80 = twist[0] + t51 * twist[2];
+        let minus_g1_vy_leg2 = (4.330127018922193 * t73 - 2.5 * t68) * t77;
+        let t87 = twist[1] + t43 * twist[2];
+        let rate_1_leg2 = g1_vx_leg2 * t80 - minus_g1_vy_leg2 * t87;
+        let g2_vy_leg2 = (4.330127018922193 * t72 + 2.5 * t67) * t77;
+        let minus_g2_vx_leg2 = (2.5 * t72 - 4.330127018922193 * t67) * t77;
+        let rate_2_leg2 = g2_vy_leg2 * t87 - minus_g2_vx_leg2 * t80;
+        let t104 = pose[0] + t42 - 0.3031088913245535;
+        let t107 = pose[1] + t50 + 0.175;
+        let t109 = 0.8660254037844386 * t104 - 0.5 * t107;
+        let t113 = 0.5 * t104 + 0.8660254037844386 * t107;
+        let t116 = t109 * t109 + t113 * t113;
+        let t118 = 0.04 / t116 - 0.25;
+        ::overact::guard::reach(t118, "leg3")?;
+        let t119 = ::overact::math::sqrt(t118);
+        let t121 = 0.5 * t109 + t113 * t119;
+        let t122 = t109 - t121;
+        let t126 = 0.5 * t113 - t109 * t119;
+        let t127 = t113 - t126;
+        let t130 = t116 * t119;
+        ::overact::guard::leg(t130, 0.03903123748998999, "leg3")?;
+        let t131 = 0.2 / t130;
+        let g1_vx_leg3 = (4.330127018922193 * t122 + 2.5 * t127) * t131;
+        let t134 = twist[0] - t50 * twist[2];
+        let minus_g1_vy_leg3 = (2.5 * t122 - 4.330127018922193 * t127) * t131;
+        let t141 = twist[1] + t42 * twist[2];
+        let rate_1_leg3 = g1_vx_leg3 * t134 - minus_g1_vy_leg3 * t141;
+        let g2_vy_leg3 = (2.5 * t121 - 4.330127018922193 * t126) * t131;
+        let minus_g2_vx_leg3 = (4.330127018922193 * t121 + 2.5 * t126) * t131;
+        let rate_2_leg3 = g2_vy_leg3 * t141 - minus_g2_vx_leg3 * t134;
         Ok([
             rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), minus_rate_2_leg1 + twist[2],
             rate_1_leg2, rate_2_leg2 - rate_1_leg2, twist[2] - rate_2_leg2, rate_1_leg3,
@@ -818,7 +825,7 @@ impl Planar3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 240 operations (96 additions, 138 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 236 intermediates.
+    /// 236 operations (96 additions, 134 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 232 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -861,88 +868,88 @@ impl Planar3Rrr {
         let rate_dot_1_leg1 = t14 * (t18 * t23 - t28 * t33 + 0.04 * t43 + t51 * t53);
         let minus_rate_dot_2_leg1 = t14
             * (t27 * t33 + t17 * t23 + 0.04 * t51 + t43 * t53);
-        let t69 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t71 = pose[0] + t69 + 0.3031088913245535;
-        let t75 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t77 = pose[1] - t75 + 0.175;
-        let t79 = 0.8660254037844386 * t71 + 0.5 * t77;
-        let t83 = 0.5 * t71 - 0.8660254037844386 * t77;
-        let t85 = t79 * t79 + t83 * t83;
-        let t87 = 0.04 / t85 - 0.25;
-        ::overact::guard::reach(t87, "leg2")?;
-        let t88 = ::overact::math::sqrt(t87);
-        let t89 = t85 * t88;
-        ::overact::guard::leg(t89, 0.03903123748998999, "leg2")?;
-        let t90 = 0.2 / t89;
-        let t93 = 0.5 * t83 + t79 * t88;
-        let t94 = t83 - t93;
-        let t98 = t83 * t88 - 0.5 * t79;
-        let t99 = t79 + t98;
-        let t101 = 4.330127018922193 * t94 - 2.5 * t99;
-        let t104 = t75 * twist[2];
-        let t106 = acceleration[1] + t69 * acceleration[2] + twist[2] * t104;
-        let t110 = 4.330127018922193 * t99 + 2.5 * t94;
-        let t113 = t69 * twist[2];
-        let t115 = acceleration[0] + t75 * acceleration[2] - twist[2] * t113;
-        let t120 = 4.330127018922193 * t93 + 2.5 * t98;
-        let g2_vy_leg2 = t120 * t90;
-        let t122 = twist[1] + t113;
-        let t126 = 2.5 * t93 - 4.330127018922193 * t98;
-        let minus_g2_vx_leg2 = t126 * t90;
-        let t128 = twist[0] + t104;
-        let rate_2_leg2 = g2_vy_leg2 * t122 - minus_g2_vx_leg2 * t128;
-        let t131 = rate_2_leg2 * rate_2_leg2;
-        let g1_vx_leg2 = t110 * t90;
-        let minus_g1_vy_leg2 = t101 * t90;
-        let rate_1_leg2 = g1_vx_leg2 * t128 - minus_g1_vy_leg2 * t122;
-        let t139 = rate_1_leg2 * rate_1_leg2;
-        let t141 = 2.5 * (t85 - 0.08);
-        let minus_rate_dot_1_leg2 = t90
-            * (t101 * t106 - t110 * t115 - 0.2 * t131 - t139 * t141);
-        let minus_rate_dot_2_leg2 = t90
-            * (t126 * t115 - t120 * t106 + 0.2 * t139 + t131 * t141);
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t158 = 0.1 * minus_c123_leg2;
-        let t160 = pose[0] + t158 - 0.3031088913245535;
+        let t70 = 0.1 * minus_c123_leg2;
+        let t71 = t6 - t70;
+        let t73 = pose[0] + t71 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t165 = 0.1 * minus_s123_leg2;
-        let t167 = pose[1] + t165 + 0.175;
-        let t169 = 0.8660254037844386 * t160 - 0.5 * t167;
-        let t173 = 0.5 * t160 + 0.8660254037844386 * t167;
-        let t175 = t169 * t169 + t173 * t173;
-        let t177 = 0.04 / t175 - 0.25;
-        ::overact::guard::reach(t177, "leg3")?;
-        let t178 = ::overact::math::sqrt(t177);
-        let t179 = t175 * t178;
-        ::overact::guard::leg(t179, 0.03903123748998999, "leg3")?;
-        let t180 = 0.2 / t179;
-        let t183 = 0.5 * t169 + t173 * t178;
-        let t184 = t169 - t183;
-        let t188 = 0.5 * t173 - t169 * t178;
-        let t189 = t173 - t188;
-        let t191 = 4.330127018922193 * t184 + 2.5 * t189;
-        let t194 = t158 * twist[2];
-        let t196 = acceleration[0] - t165 * acceleration[2] - twist[2] * t194;
-        let t200 = 2.5 * t184 - 4.330127018922193 * t189;
-        let t203 = t165 * twist[2];
-        let t205 = acceleration[1] + t158 * acceleration[2] - twist[2] * t203;
-        let t210 = 2.5 * t183 - 4.330127018922193 * t188;
-        let g2_vy_leg3 = t210 * t180;
-        let t212 = twist[1] + t194;
-        let t216 = 4.330127018922193 * t183 + 2.5 * t188;
-        let minus_g2_vx_leg3 = t216 * t180;
-        let t218 = twist[0] - t203;
-        let rate_2_leg3 = g2_vy_leg3 * t212 - minus_g2_vx_leg3 * t218;
-        let t221 = rate_2_leg3 * rate_2_leg3;
-        let g1_vx_leg3 = t191 * t180;
-        let minus_g1_vy_leg3 = t200 * t180;
-        let rate_1_leg3 = g1_vx_leg3 * t218 - minus_g1_vy_leg3 * t212;
-        let t229 = rate_1_leg3 * rate_1_leg3;
-        let t231 = 2.5 * (t175 - 0.08);
-        let rate_dot_1_leg3 = t180
-            * (t191 * t196 - t200 * t205 + 0.2 * t221 + t229 * t231);
-        let rate_dot_2_leg3 = t180
-            * (t210 * t205 - t216 * t196 - 0.2 * t229 - t221 * t231);
+        let t78 = 0.1 * minus_s123_leg2;
+        let t79 = t2 + t78;
+        let t81 = pose[1] - t79 + 0.175;
+        let t83 = 0.8660254037844386 * t73 + 0.5 * t81;
+        let t87 = 0.5 * t73 - 0.8660254037844386 * t81;
+        let t89 = t83 * t83 + t87 * t87;
+        let t91 = 0.04 / t89 - 0.25;
+        ::overact::guard::reach(t91, "leg2")?;
+        let t92 = ::overact::math::sqrt(t91);
+        let t93 = t89 * t92;
+        ::overact::guard::leg(t93, 0.03903123748998999, "leg2")?;
+        let t94 = 0.2 / t93;
+        let t97 = 0.5 * t87 + t83 * t92;
+        let t98 = t87 - t97;
+        let t102 = t87 * t92 - 0.5 * t83;
+        let t103 = t83 + t102;
+        let t105 = 4.330127018922193 * t98 - 2.5 * t103;
+        let t108 = t79 * twist[2];
+        let t110 = acceleration[1] + t71 * acceleration[2] + twist[2] * t108;
+        let t114 = 4.330127018922193 * t103 + 2.5 * t98;
+        let t117 = t71 * twist[2];
+        let t119 = acceleration[0] + t79 * acceleration[2] - twist[2] * t117;
+        let t124 = 4.330127018922193 * t97 + 2.5 * t102;
+        let g2_vy_leg2 = t124 * t94;
+        let t126 = twist[1] + t117;
+        let t130 = 2.5 * t97 - 4.330127018922193 * t102;
+        let minus_g2_vx_leg2 = t130 * t94;
+        let t132 = twist[0] + t108;
+        let rate_2_leg2 = g2_vy_leg2 * t126 - minus_g2_vx_leg2 * t132;
+        let t135 = rate_2_leg2 * rate_2_leg2;
+        let g1_vx_leg2 = t114 * t94;
+        let minus_g1_vy_leg2 = t105 * t94;
+        let rate_1_leg2 = g1_vx_leg2 * t132 - minus_g1_vy_leg2 * t126;
+        let t143 = rate_1_leg2 * rate_1_leg2;
+        let t145 = 2.5 * (t89 - 0.08);
+        let minus_rate_dot_1_leg2 = t94
+            * (t105 * t110 - t114 * t119 - 0.2 * t135 - t143 * t145);
+        let minus_rate_dot_2_leg2 = t94
+            * (t130 * t119 - t124 * t110 + 0.2 * t143 + t135 * t145);
+        let t160 = pose[0] + t70 - 0.3031088913245535;
+        let t163 = pose[1] + t78 + 0.175;
+        let t165 = 0.8660254037844386 * t160 - 0.5 * t163;
+        let t169 = 0.5 * t160 + 0.8660254037844386 * t163;
+        let t171 = t165 * t165 + t169 * t169;
+        let t173 = 0.04 / t171 - 0.25;
+        ::overact::guard::reach(t173, "leg3")?;
+        let t174 = ::overact::math::sqrt(t173);
+        let t175 = t171 * t174;
+        ::overact::guard::leg(t175, 0.03903123748998999, "leg3")?;
+        let t176 = 0.2 / t175;
+        let t179 = 0.5 * t165 + t169 * t174;
+        let t180 = t165 - t179;
+        let t184 = 0.5 * t169 - t165 * t174;
+        let t185 = t169 - t184;
+        let t187 = 4.330127018922193 * t180 + 2.5 * t185;
+        let t190 = t70 * twist[2];
+        let t192 = acceleration[0] - t78 * acceleration[2] - twist[2] * t190;
+        let t196 = 2.5 * t180 - 4.330127018922193 * t185;
+        let t199 = t78 * twist[2];
+        let t201 = acceleration[1] + t70 * acceleration[2] - twist[2] * t199;
+        let t206 = 2.5 * t179 - 4.330127018922193 * t184;
+        let g2_vy_leg3 = t206 * t176;
+        let t208 = twist[1] + t190;
+        let t212 = 4.330127018922193 * t179 + 2.5 * t184;
+        let minus_g2_vx_leg3 = t212 * t176;
+        let t214 = twist[0] - t199;
+        let rate_2_leg3 = g2_vy_leg3 * t208 - minus_g2_vx_leg3 * t214;
+        let t217 = rate_2_leg3 * rate_2_leg3;
+        let g1_vx_leg3 = t187 * t176;
+        let minus_g1_vy_leg3 = t196 * t176;
+        let rate_1_leg3 = g1_vx_leg3 * t214 - minus_g1_vy_leg3 * t208;
+        let t225 = rate_1_leg3 * rate_1_leg3;
+        let t227 = 2.5 * (t171 - 0.08);
+        let rate_dot_1_leg3 = t176
+            * (t187 * t192 - t196 * t201 + 0.2 * t217 + t225 * t227);
+        let rate_dot_2_leg3 = t176
+            * (t206 * t201 - t212 * t192 - 0.2 * t225 - t217 * t227);
         Ok([
             rate_dot_1_leg1, -(rate_dot_1_leg1 + minus_rate_dot_2_leg1),
             minus_rate_dot_2_leg1 + acceleration[2], -minus_rate_dot_1_leg2,
@@ -958,7 +965,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 184 operations (72 additions, 103 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 186 intermediates.
+    /// 174 operations (66 additions, 99 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 176 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -967,90 +974,90 @@ impl Planar3Rrr {
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t27 = t14 + t17 * t23 - 0.5 * t14;
-        let t32 = t17 - (0.5 * t17 + t14 * t23);
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = (4.330127018922193 * t27 + 2.5 * t32) * t36;
-        let t39 = 0.1 * s_phi;
-        let t40 = pose[0] - t39;
-        let t42 = 0.1 * c_phi;
-        let t44 = pose[1] + t42 - 0.35;
-        let t47 = t44 * t44 + t40 * t40;
-        let t49 = 0.04 / t47 - 0.25;
-        ::overact::guard::reach(t49, "leg1")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let t54 = t47 * t50;
-        ::overact::guard::leg(t54, 0.03903123748998999, "leg1")?;
-        let t55 = 1.0 / t54;
-        let minus_g1_vx_leg1 = (0.5 * t40 + t44 * t50 - t40) * t55;
+        let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t62 = 0.1 * minus_c123_leg2;
-        let t64 = pose[0] + t62 - 0.3031088913245535;
+        let t6 = 0.1 * minus_c123_leg2;
+        let t7 = t2 - t6;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t11 = 0.1 * c_phi;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t69 = 0.1 * minus_s123_leg2;
-        let t71 = pose[1] + t69 + 0.175;
-        let t73 = 0.8660254037844386 * t64 - 0.5 * t71;
-        let t77 = 0.5 * t64 + 0.8660254037844386 * t71;
-        let t80 = t73 * t73 + t77 * t77;
-        let t82 = 0.04 / t80 - 0.25;
-        ::overact::guard::reach(t82, "leg3")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t86 = t73 - (0.5 * t73 + t77 * t83);
-        let t91 = t77 - (0.5 * t77 - t73 * t83);
-        let t94 = t80 * t83;
-        ::overact::guard::leg(t94, 0.03903123748998999, "leg3")?;
-        let t95 = 0.2 / t94;
-        let g1_vx_leg3 = (4.330127018922193 * t86 + 2.5 * t91) * t95;
-        let t98 = g1_vx_leg2 * actuator_velocities[1]
+        let t15 = 0.1 * minus_s123_leg2;
+        let t16 = t11 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t23 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t26 = t23 * t23 + t20 * t20;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t20 * t29 + 0.5 * t23;
+        let t36 = 0.5 * t20 - t23 * t29;
+        let t39 = t26 * t29;
+        ::overact::guard::leg(t39, 0.03903123748998999, "leg2")?;
+        let t40 = 0.2 / t39;
+        let g1_vx_leg2 = (4.330127018922193 * t32 + 2.5 * t36) * t40;
+        let t43 = pose[0] - t2;
+        let t46 = pose[1] + t11 - 0.35;
+        let t49 = t46 * t46 + t43 * t43;
+        let t51 = 0.04 / t49 - 0.25;
+        ::overact::guard::reach(t51, "leg1")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t55 = t49 * t52;
+        ::overact::guard::leg(t55, 0.03903123748998999, "leg1")?;
+        let t56 = 1.0 / t55;
+        let minus_g1_vx_leg1 = (t46 * t52 - 0.5 * t43) * t56;
+        let t61 = pose[0] + t6 - 0.3031088913245535;
+        let t64 = pose[1] + t15 + 0.175;
+        let t66 = 0.8660254037844386 * t61 - 0.5 * t64;
+        let t70 = 0.5 * t61 + 0.8660254037844386 * t64;
+        let t73 = t66 * t66 + t70 * t70;
+        let t75 = 0.04 / t73 - 0.25;
+        ::overact::guard::reach(t75, "leg3")?;
+        let t76 = ::overact::math::sqrt(t75);
+        let t78 = 0.5 * t66 - t70 * t76;
+        let t82 = 0.5 * t70 + t66 * t76;
+        let t85 = t73 * t76;
+        ::overact::guard::leg(t85, 0.03903123748998999, "leg3")?;
+        let t86 = 0.2 / t85;
+        let g1_vx_leg3 = (4.330127018922193 * t78 + 2.5 * t82) * t86;
+        let t89 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t103 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t94 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t103, 39.38461538461539, "actuators")?;
-        let t104 = 1.0 / t103;
-        let g1_vy_leg1 = (t44 - (0.5 * t44 - t40 * t50)) * t55;
-        let minus_g1_vy_leg2 = (4.330127018922193 * t32 - 2.5 * t27) * t36;
-        let minus_g1_vy_leg3 = (2.5 * t86 - 4.330127018922193 * t91) * t95;
-        let t123 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t94, 39.38461538461539, "actuators")?;
+        let t95 = 1.0 / t94;
+        let g1_vy_leg1 = (0.5 * t46 + t43 * t52) * t56;
+        let minus_g1_vy_leg2 = (4.330127018922193 * t36 - 2.5 * t32) * t40;
+        let minus_g1_vy_leg3 = (2.5 * t78 - 4.330127018922193 * t82) * t86;
+        let t113 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t124 = t123 * t104;
-        let t131 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t123 * t124;
-        ::overact::guard::platform(t131, 39.384615384615394, "actuators")?;
-        let t132 = 1.0 / t131;
-        let t139 = g1_vy_leg1 * actuator_velocities[0]
+        let t114 = t113 * t95;
+        let t121 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t113 * t114;
+        ::overact::guard::platform(t121, 39.384615384615394, "actuators")?;
+        let t122 = 1.0 / t121;
+        let t129 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t98 * t124;
-        let g1_wz_leg1 = t42 * minus_g1_vx_leg1 - t39 * g1_vy_leg1;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t62 * minus_g1_vy_leg3 + t69 * g1_vx_leg3;
-        let t159 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t89 * t114;
+        let g1_wz_leg1 = t11 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t6 * minus_g1_vy_leg3 + t15 * g1_vx_leg3;
+        let t149 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t160 = t159 * t104;
-        let t162 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t123 * t160;
-        let t163 = t162 * t132;
-        let t172 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t159 * t160 - t162 * t163;
-        ::overact::guard::platform(t172, 0.4800000000000003, "actuators")?;
-        let t182 = (g1_wz_leg1 * actuator_velocities[0]
+        let t150 = t149 * t95;
+        let t152 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t113 * t150;
+        let t153 = t152 * t122;
+        let t171 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t149 * t150 - t152 * t153;
+        ::overact::guard::platform(t171, 0.4800000000000003, "actuators")?;
+        let t172 = (g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1]
-            - minus_g1_wz_leg3 * actuator_velocities[2] - t98 * t160 - t163 * t139)
-            / t172;
-        let t184 = t132 * t139 - t163 * t182;
-        Ok([t98 * t104 + t124 * t184 - t160 * t182, t184, t182])
+            - minus_g1_wz_leg3 * actuator_velocities[2] - t89 * t150 - t153 * t129)
+            / t171;
+        let t174 = t122 * t129 - t153 * t172;
+        Ok([t89 * t95 + t114 * t174 - t150 * t172, t174, t172])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1061,7 +1068,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 277 operations (103 additions, 165 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 279 intermediates.
+    /// 273 operations (103 additions, 161 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 275 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1071,136 +1078,136 @@ impl Planar3Rrr {
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t26 = t17 * t23 - 0.5 * t14;
-        let t27 = t14 + t26;
-        let t31 = 0.5 * t17 + t14 * t23;
-        let t32 = t17 - t31;
-        let t34 = 4.330127018922193 * t27 + 2.5 * t32;
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = t34 * t36;
-        let t38 = t4 * twist[2];
-        let t43 = 4.330127018922193 * t32 - 2.5 * t27;
-        let t44 = t10 * twist[2];
-        let g2_vy_leg2 = (4.330127018922193 * t31 + 2.5 * t26) * t36;
-        let t52 = twist[1] + t38;
-        let minus_g2_vx_leg2 = (2.5 * t31 - 4.330127018922193 * t26) * t36;
-        let t58 = twist[0] + t44;
-        let rate_2_leg2 = g2_vy_leg2 * t52 - minus_g2_vx_leg2 * t58;
-        let minus_g1_vy_leg2 = t43 * t36;
-        let rate_1_leg2 = g1_vx_leg2 * t58 - minus_g1_vy_leg2 * t52;
-        let t72 = t34 * (twist[2] * t38) + t43 * (twist[2] * t44)
-            - 0.2 * (rate_2_leg2 * rate_2_leg2)
-            - rate_1_leg2 * rate_1_leg2 * (2.5 * (t20 - 0.08));
-        let minus_rate_dot_1_leg2 = t36 * t72;
-        let t74 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t76 = 0.1 * s_phi;
-        let t77 = pose[0] - t76;
-        let t79 = 0.1 * c_phi;
-        let t81 = pose[1] + t79 - 0.35;
-        let t84 = t81 * t81 + t77 * t77;
-        let t86 = 0.04 / t84 - 0.25;
-        ::overact::guard::reach(t86, "leg1")?;
-        let t87 = ::overact::math::sqrt(t86);
-        let t89 = 0.5 * t77 + t81 * t87;
-        let t90 = t89 - t77;
-        let t91 = t84 * t87;
-        ::overact::guard::leg(t91, 0.03903123748998999, "leg1")?;
-        let t92 = 1.0 / t91;
-        let minus_g1_vx_leg1 = t90 * t92;
-        let minus_g2_vx_leg1 = t89 * t92;
-        let t95 = t79 * twist[2];
-        let t96 = twist[0] - t95;
-        let t100 = 0.5 * t81 - t77 * t87;
-        let minus_g2_vy_leg1 = t100 * t92;
-        let t102 = t76 * twist[2];
-        let t103 = twist[1] - t102;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t96 + minus_g2_vy_leg1 * t103;
-        let t110 = t81 - t100;
-        let g1_vy_leg1 = t110 * t92;
-        let rate_1_leg1 = g1_vy_leg1 * t103 - minus_g1_vx_leg1 * t96;
-        let t123 = 0.04 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-            - (t90 * (twist[2] * t102) + t110 * (twist[2] * t95))
-            + rate_1_leg1 * rate_1_leg1 * (0.5 * (t84 - 0.08));
-        let rate_dot_1_leg1 = t92 * t123;
-        let t125 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t131 = 0.1 * minus_c123_leg2;
-        let t133 = pose[0] + t131 - 0.3031088913245535;
+        let t6 = 0.1 * minus_c123_leg2;
+        let t7 = t2 - t6;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t11 = 0.1 * c_phi;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t138 = 0.1 * minus_s123_leg2;
-        let t140 = pose[1] + t138 + 0.175;
-        let t142 = 0.8660254037844386 * t133 - 0.5 * t140;
-        let t146 = 0.5 * t133 + 0.8660254037844386 * t140;
-        let t149 = t142 * t142 + t146 * t146;
-        let t151 = 0.04 / t149 - 0.25;
-        ::overact::guard::reach(t151, "leg3")?;
-        let t152 = ::overact::math::sqrt(t151);
-        let t154 = 0.5 * t142 + t146 * t152;
-        let t155 = t142 - t154;
-        let t159 = 0.5 * t146 - t142 * t152;
-        let t160 = t146 - t159;
-        let t162 = 4.330127018922193 * t155 + 2.5 * t160;
-        let t163 = t149 * t152;
-        ::overact::guard::leg(t163, 0.03903123748998999, "leg3")?;
-        let t164 = 0.2 / t163;
-        let g1_vx_leg3 = t162 * t164;
-        let t168 = 2.5 * t155 - 4.330127018922193 * t160;
-        let t169 = t138 * twist[2];
-        let t172 = t131 * twist[2];
-        let g2_vy_leg3 = (2.5 * t154 - 4.330127018922193 * t159) * t164;
-        let t180 = twist[1] + t172;
-        let minus_g2_vx_leg3 = (4.330127018922193 * t154 + 2.5 * t159) * t164;
-        let t186 = twist[0] - t169;
-        let rate_2_leg3 = g2_vy_leg3 * t180 - minus_g2_vx_leg3 * t186;
-        let minus_g1_vy_leg3 = t168 * t164;
-        let rate_1_leg3 = g1_vx_leg3 * t186 - minus_g1_vy_leg3 * t180;
-        let t200 = t168 * (twist[2] * t169) - t162 * (twist[2] * t172)
+        let t15 = 0.1 * minus_s123_leg2;
+        let t16 = t11 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t26 = t20 * t20 + t23 * t23;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t23 * t29 - 0.5 * t20;
+        let t33 = t20 + t32;
+        let t37 = 0.5 * t23 + t20 * t29;
+        let t38 = t23 - t37;
+        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
+        let t41 = t26 * t29;
+        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
+        let t42 = 0.2 / t41;
+        let g1_vx_leg2 = t40 * t42;
+        let t44 = t7 * twist[2];
+        let t49 = 4.330127018922193 * t38 - 2.5 * t33;
+        let t50 = t16 * twist[2];
+        let g2_vy_leg2 = (4.330127018922193 * t37 + 2.5 * t32) * t42;
+        let t58 = twist[1] + t44;
+        let minus_g2_vx_leg2 = (2.5 * t37 - 4.330127018922193 * t32) * t42;
+        let t64 = twist[0] + t50;
+        let rate_2_leg2 = g2_vy_leg2 * t58 - minus_g2_vx_leg2 * t64;
+        let minus_g1_vy_leg2 = t49 * t42;
+        let rate_1_leg2 = g1_vx_leg2 * t64 - minus_g1_vy_leg2 * t58;
+        let t78 = t40 * (twist[2] * t44) + t49 * (twist[2] * t50)
+            - 0.2 * (rate_2_leg2 * rate_2_leg2)
+            - rate_1_leg2 * rate_1_leg2 * (2.5 * (t26 - 0.08));
+        let minus_rate_dot_1_leg2 = t42 * t78;
+        let t80 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t82 = pose[0] - t2;
+        let t85 = pose[1] + t11 - 0.35;
+        let t88 = t85 * t85 + t82 * t82;
+        let t90 = 0.04 / t88 - 0.25;
+        ::overact::guard::reach(t90, "leg1")?;
+        let t91 = ::overact::math::sqrt(t90);
+        let t93 = 0.5 * t82 + t85 * t91;
+        let t94 = t93 - t82;
+        let t95 = t88 * t91;
+        ::overact::guard::leg(t95, 0.03903123748998999, "leg1")?;
+        let t96 = 1.0 / t95;
+        let minus_g1_vx_leg1 = t94 * t96;
+        let minus_g2_vx_leg1 = t93 * t96;
+        let t99 = t11 * twist[2];
+        let t100 = twist[0] - t99;
+        let t104 = 0.5 * t85 - t82 * t91;
+        let minus_g2_vy_leg1 = t104 * t96;
+        let t106 = t2 * twist[2];
+        let t107 = twist[1] - t106;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t100 + minus_g2_vy_leg1 * t107;
+        let t114 = t85 - t104;
+        let g1_vy_leg1 = t114 * t96;
+        let rate_1_leg1 = g1_vy_leg1 * t107 - minus_g1_vx_leg1 * t100;
+        let t127 = 0.04 * (minus_rate_2_leg1 * minus_rate_2_leg1)
+            - (t94 * (twist[2] * t106) + t114 * (twist[2] * t99))
+            + rate_1_leg1 * rate_1_leg1 * (0.5 * (t88 - 0.08));
+        let rate_dot_1_leg1 = t96 * t127;
+        let t129 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t133 = pose[0] + t6 - 0.3031088913245535;
+        let t136 = pose[1] + t15 + 0.175;
+        let t138 = 0.8660254037844386 * t133 - 0.5 * t136;
+        let t142 = 0.5 * t133 + 0.8660254037844386 * t136;
+        let t145 = t138 * t138 + t142 * t142;
+        let t147 = 0.04 / t145 - 0.25;
+        ::overact::guard::reach(t147, "leg3")?;
+        let t148 = ::overact::math::sqrt(t147);
+        let t150 = 0.5 * t138 + t142 * t148;
+        let t151 = t138 - t150;
+        let t155 = 0.5 * t142 - t138 * t148;
+        let t156 = t142 - t155;
+        let t158 = 4.330127018922193 * t151 + 2.5 * t156;
+        let t159 = t145 * t148;
+        ::overact::guard::leg(t159, 0.03903123748998999, "leg3")?;
+        let t160 = 0.2 / t159;
+        let g1_vx_leg3 = t158 * t160;
+        let t164 = 2.5 * t151 - 4.330127018922193 * t156;
+        let t165 = t15 * twist[2];
+        let t168 = t6 * twist[2];
+        let g2_vy_leg3 = (2.5 * t150 - 4.330127018922193 * t155) * t160;
+        let t176 = twist[1] + t168;
+        let minus_g2_vx_leg3 = (4.330127018922193 * t150 + 2.5 * t155) * t160;
+        let t182 = twist[0] - t165;
+        let rate_2_leg3 = g2_vy_leg3 * t176 - minus_g2_vx_leg3 * t182;
+        let minus_g1_vy_leg3 = t164 * t160;
+        let rate_1_leg3 = g1_vx_leg3 * t182 - minus_g1_vy_leg3 * t176;
+        let t196 = t164 * (twist[2] * t165) - t158 * (twist[2] * t168)
             + 0.2 * (rate_2_leg3 * rate_2_leg3)
-            + rate_1_leg3 * rate_1_leg3 * (2.5 * (t149 - 0.08));
-        let rate_dot_1_leg3 = t164 * t200;
-        let t202 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t204 = g1_vx_leg2 * t74 - minus_g1_vx_leg1 * t125 + g1_vx_leg3 * t202;
-        let t209 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + rate_1_leg3 * rate_1_leg3 * (2.5 * (t145 - 0.08));
+        let rate_dot_1_leg3 = t160 * t196;
+        let t198 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t200 = g1_vx_leg2 * t80 - minus_g1_vx_leg1 * t129 + g1_vx_leg3 * t198;
+        let t205 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t209, 39.38461538461539, "actuators")?;
-        let t210 = 1.0 / t209;
-        let t216 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t205, 39.38461538461539, "actuators")?;
+        let t206 = 1.0 / t205;
+        let t212 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t217 = t216 * t210;
-        let t224 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t216 * t217;
-        ::overact::guard::platform(t224, 39.384615384615394, "actuators")?;
-        let t225 = 1.0 / t224;
-        let t232 = g1_vy_leg1 * t125 - minus_g1_vy_leg2 * t74 - minus_g1_vy_leg3 * t202
-            + t204 * t217;
-        let g1_wz_leg1 = t79 * minus_g1_vx_leg1 - t76 * g1_vy_leg1;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t131 * minus_g1_vy_leg3 + t138 * g1_vx_leg3;
-        let t252 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t213 = t212 * t206;
+        let t220 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t212 * t213;
+        ::overact::guard::platform(t220, 39.384615384615394, "actuators")?;
+        let t221 = 1.0 / t220;
+        let t228 = g1_vy_leg1 * t129 - minus_g1_vy_leg2 * t80 - minus_g1_vy_leg3 * t198
+            + t200 * t213;
+        let g1_wz_leg1 = t11 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t6 * minus_g1_vy_leg3 + t15 * g1_vx_leg3;
+        let t248 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t253 = t252 * t210;
-        let t255 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t216 * t253;
-        let t256 = t255 * t225;
-        let t265 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t252 * t253 - t255 * t256;
-        ::overact::guard::platform(t265, 0.4800000000000003, "actuators")?;
-        let t275 = (g1_wz_leg1 * t125 + g1_wz_leg2 * t74 - minus_g1_wz_leg3 * t202
-            - t204 * t253 - t256 * t232) / t265;
-        let t277 = t225 * t232 - t256 * t275;
-        Ok([t204 * t210 + t217 * t277 - t253 * t275, t277, t275])
+        let t249 = t248 * t206;
+        let t251 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t212 * t249;
+        let t252 = t251 * t221;
+        let t270 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t248 * t249 - t251 * t252;
+        ::overact::guard::platform(t270, 0.4800000000000003, "actuators")?;
+        let t271 = (g1_wz_leg1 * t129 + g1_wz_leg2 * t80 - minus_g1_wz_leg3 * t198
+            - t200 * t249 - t252 * t228) / t270;
+        let t273 = t221 * t228 - t252 * t271;
+        Ok([t200 * t206 + t213 * t273 - t249 * t271, t273, t271])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1212,7 +1219,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 400 operations (142 additions, 252 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 338 intermediates.
+    /// 379 operations (135 additions, 238 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 319 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1238,18 +1245,16 @@ impl Planar3Rrr {
         let minus_g1_vx_leg1 = t16 * t18;
         let t22 = 0.5 * t7 - t3 * t13;
         let t23 = t7 - t22;
-        let t24 = t2 * acceleration[2];
-        let t26 = t5 * twist[2];
-        let t27 = twist[2] * t26;
-        let t28 = acceleration[1] - t24 - t27;
-        let t30 = t5 * acceleration[2];
-        let t32 = t2 * twist[2];
-        let t33 = twist[2] * t32;
-        let t34 = acceleration[0] - t30 + t33;
+        let t24 = t5 * twist[2];
+        let t27 = twist[2] * t24 + t2 * acceleration[2];
+        let t28 = acceleration[1] - t27;
+        let t30 = t2 * twist[2];
+        let t33 = twist[2] * t30 - t5 * acceleration[2];
+        let t34 = acceleration[0] + t33;
         let minus_g2_vx_leg1 = t15 * t18;
-        let t38 = twist[0] - t26;
+        let t38 = twist[0] - t24;
         let minus_g2_vy_leg1 = t22 * t18;
-        let t41 = twist[1] - t32;
+        let t41 = twist[1] - t30;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
         let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t46 = t23 * t28 - t16 * t34 + 0.04 * t44;
@@ -1266,179 +1271,181 @@ impl Planar3Rrr {
         let t73 = t15 * t34 + t22 * t28 + 0.04 * t51;
         let minus_rate_dot_2_leg1 = t18 * (t73 + t44 * t53);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t5 * minus_g2_vx_leg1;
-        let t87 = t44 * (5.0 * t17) + minus_rate_dot_2_leg1 * (2.5 * t52);
-        let t93 = 5.0 * (t17 * t51) + 2.5 * (t52 * rate_dot_1_leg1);
-        let t102 = 5.0 * t46;
-        let t104 = 5.0 * t73;
-        let t117 = rate_1_leg1 + minus_rate_2_leg1;
-        let t123 = minus_rate_2_leg1 + twist[2];
-        let t130 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
+        let t83 = 5.0 * t17;
+        let t85 = 2.5 * t52;
+        let t87 = t44 * t83 + minus_rate_dot_2_leg1 * t85;
+        let t91 = t51 * t83 + rate_dot_1_leg1 * t85;
+        let t100 = 5.0 * t46;
+        let t102 = 5.0 * t73;
+        let t115 = rate_1_leg1 + minus_rate_2_leg1;
+        let t121 = minus_rate_2_leg1 + twist[2];
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t129 = 0.1 * minus_c123_leg2;
+        let t130 = t2 - t129;
         let t132 = pose[0] + t130 + 0.3031088913245535;
-        let t136 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t138 = pose[1] - t136 + 0.175;
-        let t140 = 0.8660254037844386 * t132 + 0.5 * t138;
-        let t143 = 0.5 * t132 - 0.8660254037844386 * t138;
-        let t146 = t140 * t140 + t143 * t143;
-        let t148 = 0.04 / t146 - 0.25;
-        ::overact::guard::reach(t148, "leg2")?;
-        let t149 = ::overact::math::sqrt(t148);
-        let t152 = t143 * t149 - 0.5 * t140;
-        let t153 = t140 + t152;
-        let t157 = 0.5 * t143 + t140 * t149;
-        let t158 = t143 - t157;
-        let t160 = 4.330127018922193 * t153 + 2.5 * t158;
-        let t161 = t146 * t149;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t137 = 0.1 * minus_s123_leg2;
+        let t138 = t5 + t137;
+        let t139 = pose[1] + 0.175;
+        let t140 = t139 - t138;
+        let t142 = 0.5 * t132 - 0.8660254037844386 * t140;
+        let t145 = 0.8660254037844386 * t132 + 0.5 * t140;
+        let t148 = t145 * t145 + t142 * t142;
+        let t150 = 0.04 / t148 - 0.25;
+        ::overact::guard::reach(t150, "leg2")?;
+        let t151 = ::overact::math::sqrt(t150);
+        let t154 = t142 * t151 + 0.5 * t145;
+        let t158 = 0.5 * t142 - t145 * t151;
+        let t160 = 4.330127018922193 * t154 + 2.5 * t158;
+        let t161 = t148 * t151;
         ::overact::guard::leg(t161, 0.03903123748998999, "leg2")?;
         let t162 = 0.2 / t161;
         let g1_vx_leg2 = t160 * t162;
-        let t166 = 4.330127018922193 * t158 - 2.5 * t153;
-        let t169 = t136 * twist[2];
+        let t166 = 4.330127018922193 * t158 - 2.5 * t154;
+        let t169 = t138 * twist[2];
         let t171 = acceleration[1] + t130 * acceleration[2] + twist[2] * t169;
         let t175 = t130 * twist[2];
-        let t177 = acceleration[0] + t136 * acceleration[2] - twist[2] * t175;
-        let t182 = 4.330127018922193 * t157 + 2.5 * t152;
-        let g2_vy_leg2 = t182 * t162;
-        let t184 = twist[1] + t175;
-        let t188 = 2.5 * t157 - 4.330127018922193 * t152;
-        let minus_g2_vx_leg2 = t188 * t162;
-        let t190 = twist[0] + t169;
-        let rate_2_leg2 = g2_vy_leg2 * t184 - minus_g2_vx_leg2 * t190;
-        let t193 = rate_2_leg2 * rate_2_leg2;
-        let t195 = t166 * t171 - t160 * t177 - 0.2 * t193;
+        let t177 = acceleration[0] + t138 * acceleration[2] - twist[2] * t175;
+        let t181 = t166 + 5.0 * t140;
+        let minus_g2_vy_leg2 = t181 * t162;
+        let t183 = twist[1] + t175;
+        let t186 = 5.0 * t132 - t160;
+        let minus_g2_vx_leg2 = t186 * t162;
+        let t188 = twist[0] + t169;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * t183 + minus_g2_vx_leg2 * t188;
+        let t191 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t193 = t166 * t171 - t160 * t177 - 0.2 * t191;
         let minus_g1_vy_leg2 = t166 * t162;
-        let rate_1_leg2 = g1_vx_leg2 * t190 - minus_g1_vy_leg2 * t184;
-        let t200 = rate_1_leg2 * rate_1_leg2;
-        let t201 = t146 - 0.08;
-        let t202 = 2.5 * t201;
-        let minus_rate_dot_1_leg2 = t162 * (t195 - t200 * t202);
-        let t206 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t207 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = t136 * g1_vx_leg2 - t130 * minus_g1_vy_leg2;
-        let t211 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t222 = t188 * t177 - t182 * t171 + 0.2 * t200;
-        let minus_rate_dot_2_leg2 = t162 * (t222 + t193 * t202);
-        let g2_wz_leg2 = t130 * g2_vy_leg2 - t136 * minus_g2_vx_leg2;
-        let t235 = t193 * (5.0 * t161) + t202 * minus_rate_dot_2_leg2;
-        let t241 = 5.0 * (t161 * t200) - 2.5 * (t201 * minus_rate_dot_1_leg2);
-        let t263 = rate_2_leg2 - rate_1_leg2;
-        let t269 = twist[2] - rate_2_leg2;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t277 = 0.1 * minus_c123_leg2;
-        let t279 = pose[0] + t277 - 0.3031088913245535;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t284 = 0.1 * minus_s123_leg2;
-        let t286 = pose[1] + t284 + 0.175;
-        let t288 = 0.8660254037844386 * t279 - 0.5 * t286;
-        let t292 = 0.5 * t279 + 0.8660254037844386 * t286;
-        let t295 = t288 * t288 + t292 * t292;
-        let t297 = 0.04 / t295 - 0.25;
-        ::overact::guard::reach(t297, "leg3")?;
-        let t298 = ::overact::math::sqrt(t297);
-        let t300 = 0.5 * t288 + t292 * t298;
-        let t301 = t288 - t300;
-        let t305 = 0.5 * t292 - t288 * t298;
-        let t306 = t292 - t305;
-        let t308 = 4.330127018922193 * t301 + 2.5 * t306;
-        let t309 = t295 * t298;
-        ::overact::guard::leg(t309, 0.03903123748998999, "leg3")?;
-        let t310 = 0.2 / t309;
-        let g1_vx_leg3 = t308 * t310;
-        let t314 = t277 * twist[2];
-        let t316 = acceleration[0] - t284 * acceleration[2] - twist[2] * t314;
-        let t320 = 2.5 * t301 - 4.330127018922193 * t306;
-        let t323 = t284 * twist[2];
-        let t325 = acceleration[1] + t277 * acceleration[2] - twist[2] * t323;
-        let t330 = 2.5 * t300 - 4.330127018922193 * t305;
-        let g2_vy_leg3 = t330 * t310;
-        let t332 = twist[1] + t314;
-        let t336 = 4.330127018922193 * t300 + 2.5 * t305;
-        let minus_g2_vx_leg3 = t336 * t310;
-        let t338 = twist[0] - t323;
-        let rate_2_leg3 = g2_vy_leg3 * t332 - minus_g2_vx_leg3 * t338;
-        let t341 = rate_2_leg3 * rate_2_leg3;
-        let t343 = t308 * t316 - t320 * t325 + 0.2 * t341;
-        let minus_g1_vy_leg3 = t320 * t310;
-        let rate_1_leg3 = g1_vx_leg3 * t338 - minus_g1_vy_leg3 * t332;
-        let t348 = rate_1_leg3 * rate_1_leg3;
-        let t349 = t295 - 0.08;
-        let t350 = 2.5 * t349;
-        let rate_dot_1_leg3 = t310 * (t343 + t348 * t350);
-        let t354 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t355 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_g1_wz_leg3 = t277 * minus_g1_vy_leg3 + t284 * g1_vx_leg3;
-        let t359 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let t370 = t330 * t325 - t336 * t316 - 0.2 * t348;
-        let rate_dot_2_leg3 = t310 * (t370 - t341 * t350);
-        let g2_wz_leg3 = t277 * g2_vy_leg3 + t284 * minus_g2_vx_leg3;
-        let t383 = t350 * rate_dot_2_leg3 - t341 * (5.0 * t309);
-        let t389 = 5.0 * (t309 * t348) + 2.5 * (t349 * rate_dot_1_leg3);
-        let t411 = rate_2_leg3 - rate_1_leg3;
-        let t417 = twist[2] - rate_2_leg3;
-        let t423 = 10.0 * (t27 + t24);
-        let t425 = 10.0 * (t30 - t33);
+        let rate_1_leg2 = g1_vx_leg2 * t188 - minus_g1_vy_leg2 * t183;
+        let t198 = rate_1_leg2 * rate_1_leg2;
+        let t200 = 2.5 * (t148 - 0.08);
+        let minus_rate_dot_1_leg2 = t162 * (t193 - t198 * t200);
+        let t204 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t205 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = t138 * g1_vx_leg2 - t130 * minus_g1_vy_leg2;
+        let t209 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t220 = t186 * t177 + t181 * t171 + 0.2 * t198;
+        let minus_rate_dot_2_leg2 = t162 * (t220 + t191 * t200);
+        let minus_g2_wz_leg2 = t130 * minus_g2_vy_leg2 + t138 * minus_g2_vx_leg2;
+        let t230 = 5.0 * t161;
+        let t233 = t191 * t230 + t200 * minus_rate_dot_2_leg2;
+        let t237 = t198 * t230 - t200 * minus_rate_dot_1_leg2;
+        let t260 = -(minus_rate_2_leg2 + rate_1_leg2);
+        let t266 = twist[2] + minus_rate_2_leg2;
+        let t272 = pose[0] + t129 + -0.3031088913245535;
+        let t274 = t137 + t139;
+        let t276 = 0.8660254037844386 * t272 - 0.5 * t274;
+        let t280 = 0.5 * t272 + 0.8660254037844386 * t274;
+        let t283 = t276 * t276 + t280 * t280;
+        let t285 = 0.04 / t283 - 0.25;
+        ::overact::guard::reach(t285, "leg3")?;
+        let t286 = ::overact::math::sqrt(t285);
+        let t288 = 0.5 * t276 - t280 * t286;
+        let t292 = 0.5 * t280 + t276 * t286;
+        let t294 = 4.330127018922193 * t288 + 2.5 * t292;
+        let t295 = t283 * t286;
+        ::overact::guard::leg(t295, 0.03903123748998999, "leg3")?;
+        let t296 = 0.2 / t295;
+        let g1_vx_leg3 = t294 * t296;
+        let t300 = t129 * twist[2];
+        let t302 = acceleration[0] - t137 * acceleration[2] - twist[2] * t300;
+        let t306 = 2.5 * t288 - 4.330127018922193 * t292;
+        let t309 = t137 * twist[2];
+        let t311 = acceleration[1] + t129 * acceleration[2] - twist[2] * t309;
+        let t315 = t306 + 5.0 * t274;
+        let minus_g2_vy_leg3 = t315 * t296;
+        let t317 = twist[1] + t300;
+        let t320 = 5.0 * t272 - t294;
+        let minus_g2_vx_leg3 = t320 * t296;
+        let t322 = twist[0] - t309;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t317 + minus_g2_vx_leg3 * t322;
+        let t325 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t327 = t294 * t302 - t306 * t311 + 0.2 * t325;
+        let minus_g1_vy_leg3 = t306 * t296;
+        let rate_1_leg3 = g1_vx_leg3 * t322 - minus_g1_vy_leg3 * t317;
+        let t332 = rate_1_leg3 * rate_1_leg3;
+        let t334 = 2.5 * (t283 - 0.08);
+        let rate_dot_1_leg3 = t296 * (t327 + t332 * t334);
+        let t338 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t339 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_g1_wz_leg3 = t129 * minus_g1_vy_leg3 + t137 * g1_vx_leg3;
+        let t343 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let t354 = t315 * t311 + t320 * t302 + 0.2 * t332;
+        let minus_rate_dot_2_leg3 = t296 * (t354 + t325 * t334);
+        let g2_wz_leg3 = t137 * minus_g2_vx_leg3 - t129 * minus_g2_vy_leg3;
+        let t365 = 5.0 * t295;
+        let t367 = t334 * minus_rate_dot_2_leg3 + t325 * t365;
+        let t371 = t332 * t365 + t334 * rate_dot_1_leg3;
+        let t394 = -(minus_rate_2_leg3 + rate_1_leg3);
+        let t400 = twist[2] + minus_rate_2_leg3;
+        let t405 = 10.0 * t27;
+        let t406 = 10.0 * t33;
         Ok([
             [
                 -t57, -t57, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g1_vx_leg1 * t87 - minus_g2_vx_leg1 * t93,
-                minus_g2_vx_leg1 * t102 - minus_g1_vx_leg1 * t104, -(0.04 * t57),
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t117),
-                ::overact::math::signed(minus_g2_vx_leg1, t123), -t206, -t206,
+                minus_g1_vx_leg1 * t87 - minus_g2_vx_leg1 * t91,
+                minus_g2_vx_leg1 * t100 - minus_g1_vx_leg1 * t102, -(0.04 * t57),
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t115),
+                ::overact::math::signed(minus_g2_vx_leg1, t121), -t204, -t204,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t235 + minus_g2_vx_leg2 * t241),
-                g1_vx_leg2 * t222 - minus_g2_vx_leg2 * t195, -(0.04 * t206),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t263),
-                ::overact::math::signed(minus_g2_vx_leg2, t269), t354, t354,
+                -(g1_vx_leg2 * t233 + minus_g2_vx_leg2 * t237),
+                g1_vx_leg2 * t220 - minus_g2_vx_leg2 * t193, -(0.04 * t204),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t260),
+                ::overact::math::signed(minus_g2_vx_leg2, t266), t338, t338,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                g1_vx_leg3 * t383 - minus_g2_vx_leg3 * t389,
-                minus_g2_vx_leg3 * t343 - g1_vx_leg3 * t370, 0.04 * t354,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t411),
-                ::overact::math::signed(minus_g2_vx_leg3, t417), 0.0, -t423, -t425, acceleration[0],
+                g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                -(g1_vx_leg3 * t367 + minus_g2_vx_leg3 * t371),
+                minus_g2_vx_leg3 * t327 + g1_vx_leg3 * t354, 0.04 * t338,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t394),
+                ::overact::math::signed(minus_g2_vx_leg3, t400), 0.0, -t405, t406, acceleration[0],
             ],
             [
                 t58, t58, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t87 + minus_g2_vy_leg1 * t93),
-                g1_vy_leg1 * t104 + minus_g2_vy_leg1 * t102, 0.04 * t58,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t117),
-                ::overact::math::signed(minus_g2_vy_leg1, t123), t207, t207,
+                -(g1_vy_leg1 * t87 + minus_g2_vy_leg1 * t91),
+                g1_vy_leg1 * t102 + minus_g2_vy_leg1 * t100, 0.04 * t58,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t115),
+                ::overact::math::signed(minus_g2_vy_leg1, t121), t205, t205,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t235 + g2_vy_leg2 * t241,
-                g2_vy_leg2 * t195 - minus_g1_vy_leg2 * t222, 0.04 * t207,
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t263),
-                -::overact::math::signed(g2_vy_leg2, t269), -t355, -t355,
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
+                minus_g1_vy_leg2 * t233 - minus_g2_vy_leg2 * t237,
+                -(minus_g2_vy_leg2 * t193 + minus_g1_vy_leg2 * t220), 0.04 * t205,
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t260),
+                ::overact::math::signed(minus_g2_vy_leg2, t266), -t339, -t339,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t389 - minus_g1_vy_leg3 * t383,
-                minus_g1_vy_leg3 * t370 - g2_vy_leg3 * t343, -(0.04 * t355),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t411),
-                -::overact::math::signed(g2_vy_leg3, t417), 0.0, t425, -t423, acceleration[1],
+                minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                minus_g1_vy_leg3 * t367 - minus_g2_vy_leg3 * t371,
+                minus_g2_vy_leg3 * t327 - minus_g1_vy_leg3 * t354, -(0.04 * t339),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t394),
+                ::overact::math::signed(minus_g2_vy_leg3, t400), 0.0, -t406, -t405, acceleration[1],
             ],
             [
                 t62, t62, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t93 - g1_wz_leg1 * t87,
-                g1_wz_leg1 * t104 - g2_wz_leg1 * t102, 0.04 * t62,
-                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t117),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t123), -t211, -t211,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t91 - g1_wz_leg1 * t87,
+                g1_wz_leg1 * t102 - g2_wz_leg1 * t100, 0.04 * t62,
+                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t115),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t121), -t209, -t209,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
-                g1_wz_leg2, -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                g2_wz_leg2 * t241 - g1_wz_leg2 * t235, g1_wz_leg2 * t222 + g2_wz_leg2 * t195,
-                -(0.04 * t211), ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t263),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t269), -t359, -t359,
+                g1_wz_leg2, minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
+                -(minus_g2_wz_leg2 * t237 + g1_wz_leg2 * t233),
+                g1_wz_leg2 * t220 - minus_g2_wz_leg2 * t193, -(0.04 * t209),
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t260),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t266), -t343, -t343,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
-                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t389 - minus_g1_wz_leg3 * t383,
-                minus_g1_wz_leg3 * t370 - g2_wz_leg3 * t343, -(0.04 * t359),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t411),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t417), acceleration[2],
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g2_wz_leg3 * t371 + minus_g1_wz_leg3 * t367,
+                -(minus_g1_wz_leg3 * t354 + g2_wz_leg3 * t327), -(0.04 * t343),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t394),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t400), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ])
     }
@@ -1453,7 +1460,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 335 operations (114 additions, 218 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 282 intermediates.
+    /// 329 operations (112 additions, 214 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 276 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1474,20 +1481,18 @@ impl Planar3Rrr {
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 5.0 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t10;
-        let t14 = 0.1 * s_phi;
-        let t15 = t14 * acceleration[2];
-        let t17 = 0.1 * c_phi;
-        let t18 = t17 * twist[2];
-        let t19 = twist[2] * t18;
-        let t20 = acceleration[1] - t15 - t19;
-        let t22 = t17 * acceleration[2];
-        let t24 = t14 * twist[2];
-        let t25 = twist[2] * t24;
-        let t26 = acceleration[0] - t22 + t25;
+        let t14 = 0.1 * c_phi;
+        let t15 = t14 * twist[2];
+        let t17 = 0.1 * s_phi;
+        let t19 = twist[2] * t15 + t17 * acceleration[2];
+        let t20 = acceleration[1] - t19;
+        let t22 = t17 * twist[2];
+        let t25 = twist[2] * t22 - t14 * acceleration[2];
+        let t26 = acceleration[0] + t25;
         let g2_vx_leg1 = s1_leg1 * t10;
-        let t30 = twist[0] - t18;
+        let t30 = twist[0] - t15;
         let minus_g2_vy_leg1 = c1_leg1 * t10;
-        let t33 = twist[1] - t24;
+        let t33 = twist[1] - t22;
         let rate_2_leg1 = g2_vx_leg1 * t30 - minus_g2_vy_leg1 * t33;
         let t36 = rate_2_leg1 * rate_2_leg1;
         let t38 = c12_leg1 * t20 - s12_leg1 * t26 + 0.2 * t36;
@@ -1498,15 +1503,15 @@ impl Planar3Rrr {
         let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
         let t48 = minus_g1_vx_leg1 * rate_dot_1_leg1;
         let t49 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = minus_g1_vx_leg1 * t17 - g1_vy_leg1 * t14;
+        let g1_wz_leg1 = minus_g1_vx_leg1 * t14 - g1_vy_leg1 * t17;
         let t53 = g1_wz_leg1 * rate_dot_1_leg1;
         let t64 = s1_leg1 * t26 - c1_leg1 * t20 - 0.2 * t43;
         let rate_dot_2_leg1 = t10 * (t64 - t36 * t44);
         let t68 = g2_vx_leg1 * rate_dot_2_leg1;
         let t69 = minus_g2_vy_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t14 - g2_vx_leg1 * t17;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t17 - g2_vx_leg1 * t14;
         let t73 = g2_wz_leg1 * rate_dot_2_leg1;
-        let t84 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t84 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t104 = rate_2_leg1 - rate_1_leg1;
         let t110 = twist[2] - rate_2_leg1;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
@@ -1533,7 +1538,8 @@ impl Planar3Rrr {
         let t162 = twist[0] + t141;
         let rate_2_leg2 = g2_vy_leg2 * t156 - minus_g2_vx_leg2 * t162;
         let t165 = rate_2_leg2 * rate_2_leg2;
-        let t167 = t132 * t143 - t127 * t149 - 0.2 * t165;
+        let t166 = 0.2 * t165;
+        let t167 = t132 * t143 - t127 * t149 - t166;
         let minus_g1_vy_leg2 = t132 * t128;
         let rate_1_leg2 = g1_vx_leg2 * t162 - minus_g1_vy_leg2 * t156;
         let t172 = rate_1_leg2 * rate_1_leg2;
@@ -1547,50 +1553,51 @@ impl Planar3Rrr {
         let t193 = t160 * t149 - t154 * t143 + t192;
         let minus_rate_dot_2_leg2 = t128 * (t193 + t165 * t173);
         let g2_wz_leg2 = g2_vy_leg2 * t135 - minus_g2_vx_leg2 * t140;
-        let t206 = t165 * (0.2 * s2_leg2) + t173 * minus_rate_dot_2_leg2;
-        let t211 = s2_leg2 * t192 - c2_leg2 * (0.2 * minus_rate_dot_1_leg2);
-        let t233 = rate_2_leg2 - rate_1_leg2;
-        let t239 = twist[2] - rate_2_leg2;
+        let t205 = s2_leg2 * t166 + t173 * minus_rate_dot_2_leg2;
+        let t209 = s2_leg2 * t192 - t173 * minus_rate_dot_1_leg2;
+        let t231 = rate_2_leg2 - rate_1_leg2;
+        let t237 = twist[2] - rate_2_leg2;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t256 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let t257 = 5.0 / s2_leg3;
-        let g1_vx_leg3 = t256 * t257;
-        let t259 = t138 - t139;
-        let t262 = t134 + t133;
-        let t263 = t262 * twist[2];
-        let t265 = acceleration[0] - t259 * acceleration[2] - twist[2] * t263;
-        let t269 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t272 = t259 * twist[2];
-        let t274 = acceleration[1] + t262 * acceleration[2] - twist[2] * t272;
-        let t279 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t279 * t257;
-        let t281 = twist[1] + t263;
-        let t285 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t285 * t257;
-        let t287 = twist[0] - t272;
-        let rate_2_leg3 = g2_vy_leg3 * t281 - minus_g2_vx_leg3 * t287;
-        let t290 = rate_2_leg3 * rate_2_leg3;
-        let t292 = t256 * t265 - t269 * t274 + 0.2 * t290;
-        let minus_g1_vy_leg3 = t269 * t257;
-        let rate_1_leg3 = g1_vx_leg3 * t287 - minus_g1_vy_leg3 * t281;
-        let t297 = rate_1_leg3 * rate_1_leg3;
-        let t298 = 0.2 * c2_leg3;
-        let rate_dot_1_leg3 = t257 * (t292 + t297 * t298);
-        let t302 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t303 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t262 + g1_vx_leg3 * t259;
-        let t307 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let t317 = 0.2 * t297;
-        let t318 = t279 * t274 - t285 * t265 - t317;
-        let rate_dot_2_leg3 = t257 * (t318 - t290 * t298);
-        let g2_wz_leg3 = g2_vy_leg3 * t262 + minus_g2_vx_leg3 * t259;
-        let t331 = t298 * rate_dot_2_leg3 - t290 * (0.2 * s2_leg3);
-        let t336 = s2_leg3 * t317 + c2_leg3 * (0.2 * rate_dot_1_leg3);
-        let t358 = rate_2_leg3 - rate_1_leg3;
-        let t364 = twist[2] - rate_2_leg3;
-        let t370 = 10.0 * (t19 + t15);
-        let t372 = 10.0 * (t22 - t25);
+        let t254 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let t255 = 5.0 / s2_leg3;
+        let g1_vx_leg3 = t254 * t255;
+        let t257 = t138 - t139;
+        let t260 = t134 + t133;
+        let t261 = t260 * twist[2];
+        let t263 = acceleration[0] - t257 * acceleration[2] - twist[2] * t261;
+        let t267 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let t270 = t257 * twist[2];
+        let t272 = acceleration[1] + t260 * acceleration[2] - twist[2] * t270;
+        let t277 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t277 * t255;
+        let t279 = twist[1] + t261;
+        let t283 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = t283 * t255;
+        let t285 = twist[0] - t270;
+        let rate_2_leg3 = g2_vy_leg3 * t279 - minus_g2_vx_leg3 * t285;
+        let t288 = rate_2_leg3 * rate_2_leg3;
+        let t289 = 0.2 * t288;
+        let t290 = t254 * t263 - t267 * t272 + t289;
+        let minus_g1_vy_leg3 = t267 * t255;
+        let rate_1_leg3 = g1_vx_leg3 * t285 - minus_g1_vy_leg3 * t279;
+        let t295 = rate_1_leg3 * rate_1_leg3;
+        let t296 = 0.2 * c2_leg3;
+        let rate_dot_1_leg3 = t255 * (t290 + t295 * t296);
+        let t300 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t301 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t260 + g1_vx_leg3 * t257;
+        let t305 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let t315 = 0.2 * t295;
+        let t316 = t277 * t272 - t283 * t263 - t315;
+        let rate_dot_2_leg3 = t255 * (t316 - t288 * t296);
+        let g2_wz_leg3 = g2_vy_leg3 * t260 + minus_g2_vx_leg3 * t257;
+        let t328 = t296 * rate_dot_2_leg3 - s2_leg3 * t289;
+        let t332 = s2_leg3 * t315 + t296 * rate_dot_1_leg3;
+        let t354 = rate_2_leg3 - rate_1_leg3;
+        let t360 = twist[2] - rate_2_leg3;
+        let t365 = 10.0 * t19;
+        let t366 = 10.0 * t25;
         Ok([
             [
                 -t48, -t48, -(minus_g1_vx_leg1 * rate_1_leg1),
@@ -1600,16 +1607,16 @@ impl Planar3Rrr {
                 -::overact::math::signed(g2_vx_leg1, t110), -t177, -t177, g1_vx_leg2 * rate_1_leg2,
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t206 + minus_g2_vx_leg2 * t211),
+                -(g1_vx_leg2 * t205 + minus_g2_vx_leg2 * t209),
                 g1_vx_leg2 * t193 - minus_g2_vx_leg2 * t167, -(0.04 * t177),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t233),
-                ::overact::math::signed(minus_g2_vx_leg2, t239), t302, t302,
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t231),
+                ::overact::math::signed(minus_g2_vx_leg2, t237), t300, t300,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 g1_vx_leg3, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                g1_vx_leg3 * t331 - minus_g2_vx_leg3 * t336,
-                minus_g2_vx_leg3 * t292 - g1_vx_leg3 * t318, 0.04 * t302,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t358),
-                ::overact::math::signed(minus_g2_vx_leg3, t364), 0.0, -t370, -t372, acceleration[0],
+                g1_vx_leg3 * t328 - minus_g2_vx_leg3 * t332,
+                minus_g2_vx_leg3 * t290 - g1_vx_leg3 * t316, 0.04 * t300,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t354),
+                ::overact::math::signed(minus_g2_vx_leg3, t360), 0.0, -t365, t366, acceleration[0],
             ],
             [
                 t49, t49, g1_vy_leg1 * rate_1_leg1,
@@ -1619,16 +1626,16 @@ impl Planar3Rrr {
                 ::overact::math::signed(minus_g2_vy_leg1, t110), t178, t178,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t206 + g2_vy_leg2 * t211,
+                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t205 + g2_vy_leg2 * t209,
                 g2_vy_leg2 * t167 - minus_g1_vy_leg2 * t193, 0.04 * t178,
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t233),
-                -::overact::math::signed(g2_vy_leg2, t239), -t303, -t303,
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t231),
+                -::overact::math::signed(g2_vy_leg2, t237), -t301, -t301,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t336 - minus_g1_vy_leg3 * t331,
-                minus_g1_vy_leg3 * t318 - g2_vy_leg3 * t292, -(0.04 * t303),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t358),
-                -::overact::math::signed(g2_vy_leg3, t364), 0.0, t372, -t370, acceleration[1],
+                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t332 - minus_g1_vy_leg3 * t328,
+                minus_g1_vy_leg3 * t316 - g2_vy_leg3 * t290, -(0.04 * t301),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t354),
+                -::overact::math::signed(g2_vy_leg3, t360), 0.0, -t366, -t365, acceleration[1],
             ],
             [
                 t53, t53, g1_wz_leg1 * rate_1_leg1,
@@ -1639,15 +1646,15 @@ impl Planar3Rrr {
                 ::overact::math::signed(1.0 - g2_wz_leg1, t110), -t182, -t182,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 g1_wz_leg2, -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                g2_wz_leg2 * t211 - g1_wz_leg2 * t206, g1_wz_leg2 * t193 + g2_wz_leg2 * t167,
-                -(0.04 * t182), ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t233),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t239), -t307, -t307,
+                g2_wz_leg2 * t209 - g1_wz_leg2 * t205, g1_wz_leg2 * t193 + g2_wz_leg2 * t167,
+                -(0.04 * t182), ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t231),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t237), -t305, -t305,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
-                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t336 - minus_g1_wz_leg3 * t331,
-                minus_g1_wz_leg3 * t318 - g2_wz_leg3 * t292, -(0.04 * t307),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t358),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t364), acceleration[2],
+                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t332 - minus_g1_wz_leg3 * t328,
+                minus_g1_wz_leg3 * t316 - g2_wz_leg3 * t290, -(0.04 * t305),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t354),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t360), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0], -t84, 0.0,
             ],
         ])
@@ -1663,7 +1670,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 501 operations (188 additions, 304 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 436 intermediates.
+    /// 474 operations (178 additions, 287 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 411 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1700,242 +1707,240 @@ impl Planar3Rrr {
         let t32 = g1_vy_leg1 * actuator_velocities[0];
         let t33 = g1_wz_leg1 * actuator_velocities[0];
         let minus_g2_vx_leg1 = t15 * t18;
-        let t41 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t43 = pose[0] + t41 + 0.3031088913245535;
-        let t47 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t49 = pose[1] - t47 + 0.175;
-        let t51 = 0.8660254037844386 * t43 + 0.5 * t49;
-        let t54 = 0.5 * t43 - 0.8660254037844386 * t49;
-        let t57 = t51 * t51 + t54 * t54;
-        let t59 = 0.04 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg2")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t63 = t54 * t60 - 0.5 * t51;
-        let t64 = t51 + t63;
-        let t68 = 0.5 * t54 + t51 * t60;
-        let t69 = t54 - t68;
-        let t71 = 4.330127018922193 * t64 + 2.5 * t69;
-        let t72 = t57 * t60;
-        ::overact::guard::leg(t72, 0.03903123748998999, "leg2")?;
-        let t73 = 0.2 / t72;
-        let g1_vx_leg2 = t71 * t73;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t80 = 0.1 * minus_c123_leg2;
-        let t82 = pose[0] + t80 - 0.3031088913245535;
+        let t42 = 0.1 * minus_c123_leg2;
+        let t43 = t2 - t42;
+        let t45 = pose[0] + t43 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t87 = 0.1 * minus_s123_leg2;
-        let t89 = pose[1] + t87 + 0.175;
-        let t91 = 0.8660254037844386 * t82 - 0.5 * t89;
-        let t95 = 0.5 * t82 + 0.8660254037844386 * t89;
-        let t98 = t91 * t91 + t95 * t95;
-        let t100 = 0.04 / t98 - 0.25;
-        ::overact::guard::reach(t100, "leg3")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let t103 = 0.5 * t91 + t95 * t101;
-        let t104 = t91 - t103;
-        let t108 = 0.5 * t95 - t91 * t101;
-        let t109 = t95 - t108;
-        let t111 = 4.330127018922193 * t104 + 2.5 * t109;
-        let t112 = t98 * t101;
-        ::overact::guard::leg(t112, 0.03903123748998999, "leg3")?;
-        let t113 = 0.2 / t112;
-        let g1_vx_leg3 = t111 * t113;
-        let t116 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t50 = 0.1 * minus_s123_leg2;
+        let t51 = t5 + t50;
+        let t52 = pose[1] + 0.175;
+        let t53 = t52 - t51;
+        let t55 = 0.5 * t45 - 0.8660254037844386 * t53;
+        let t58 = 0.8660254037844386 * t45 + 0.5 * t53;
+        let t61 = t58 * t58 + t55 * t55;
+        let t63 = 0.04 / t61 - 0.25;
+        ::overact::guard::reach(t63, "leg2")?;
+        let t64 = ::overact::math::sqrt(t63);
+        let t67 = t55 * t64 + 0.5 * t58;
+        let t71 = 0.5 * t55 - t58 * t64;
+        let t73 = 4.330127018922193 * t67 + 2.5 * t71;
+        let t74 = t61 * t64;
+        ::overact::guard::leg(t74, 0.03903123748998999, "leg2")?;
+        let t75 = 0.2 / t74;
+        let g1_vx_leg2 = t73 * t75;
+        let t80 = pose[0] + t42 + -0.3031088913245535;
+        let t82 = t50 + t52;
+        let t84 = 0.8660254037844386 * t80 - 0.5 * t82;
+        let t88 = 0.5 * t80 + 0.8660254037844386 * t82;
+        let t91 = t84 * t84 + t88 * t88;
+        let t93 = 0.04 / t91 - 0.25;
+        ::overact::guard::reach(t93, "leg3")?;
+        let t94 = ::overact::math::sqrt(t93);
+        let t96 = 0.5 * t84 - t88 * t94;
+        let t100 = 0.5 * t88 + t84 * t94;
+        let t102 = 4.330127018922193 * t96 + 2.5 * t100;
+        let t103 = t91 * t94;
+        ::overact::guard::leg(t103, 0.03903123748998999, "leg3")?;
+        let t104 = 0.2 / t103;
+        let g1_vx_leg3 = t102 * t104;
+        let t107 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t116, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t116, 39.38461538461539, "actuators")?;
-        let t117 = 1.0 / t116;
-        let t122 = 4.330127018922193 * t69 - 2.5 * t64;
-        let minus_g1_vy_leg2 = t122 * t73;
-        let g1_wz_leg2 = t47 * g1_vx_leg2 - t41 * minus_g1_vy_leg2;
-        let t130 = 2.5 * t104 - 4.330127018922193 * t109;
-        let minus_g1_vy_leg3 = t130 * t113;
-        let minus_g1_wz_leg3 = t80 * minus_g1_vy_leg3 + t87 * g1_vx_leg3;
-        let t141 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        ::overact::guard::platform(t107, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t107, 39.38461538461539, "actuators")?;
+        let t108 = 1.0 / t107;
+        let t113 = 4.330127018922193 * t71 - 2.5 * t67;
+        let minus_g1_vy_leg2 = t113 * t75;
+        let g1_wz_leg2 = t51 * g1_vx_leg2 - t43 * minus_g1_vy_leg2;
+        let t121 = 2.5 * t96 - 4.330127018922193 * t100;
+        let minus_g1_vy_leg3 = t121 * t104;
+        let minus_g1_wz_leg3 = t42 * minus_g1_vy_leg3 + t50 * g1_vx_leg3;
+        let t132 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t142 = t141 * t117;
-        let t154 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t133 = t132 * t108;
+        let t145 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t156 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t154 * t142;
-        let t162 = t154 * t117;
-        let t164 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t154 * t162;
-        ::overact::guard::platform(t164, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t164, 39.384615384615394, "actuators")?;
-        let t165 = 1.0 / t164;
-        let t166 = t156 * t165;
-        let t168 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t141 * t142 - t156 * t166;
-        ::overact::guard::platform(t168, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t168, 0.4800000000000003, "actuators")?;
-        let t169 = 1.0 / t168;
-        let t170 = g1_wz_leg2 * actuator_velocities[1];
-        let t172 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let t174 = g1_vx_leg2 * actuator_velocities[1];
-        let t176 = g1_vx_leg3 * actuator_velocities[2];
-        let t177 = t174 - t31 + t176;
-        let t180 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t182 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t185 = t32 - t180 - t182 + t177 * t162;
-        let rate_3_leg1 = t169 * (t33 + t170 - t172 - t177 * t142 - t166 * t185);
-        let t189 = t41 * rate_3_leg1;
-        let t190 = rate_3_leg1 * t189;
-        let t192 = t47 * rate_3_leg1;
-        let t193 = rate_3_leg1 * t192;
-        let t198 = 4.330127018922193 * t68 + 2.5 * t63;
-        let g2_vy_leg2 = t198 * t73;
-        let t202 = t165 * t185 - t166 * rate_3_leg1;
-        let t207 = 2.5 * t68 - 4.330127018922193 * t63;
-        let minus_g2_vx_leg2 = t207 * t73;
-        let t213 = t177 * t117 + t162 * t202 - t142 * rate_3_leg1;
-        let rate_2_leg2 = g2_vy_leg2 * (t202 + t189) - minus_g2_vx_leg2 * (t213 + t192);
-        let t217 = rate_2_leg2 * rate_2_leg2;
-        let t218 = 0.2 * t217;
-        let t220 = actuator_velocities[1] * actuator_velocities[1];
-        let t221 = t57 - 0.08;
-        let t222 = 2.5 * t221;
-        let minus_rate_dot_1_leg2 = t73
-            * (t71 * t190 + t122 * t193 - t218 - t220 * t222);
-        let t226 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t228 = t5 * rate_3_leg1;
+        let t147 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t145 * t133;
+        let t153 = t145 * t108;
+        let t155 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t145 * t153;
+        ::overact::guard::platform(t155, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t155, 39.384615384615394, "actuators")?;
+        let t156 = 1.0 / t155;
+        let t157 = t147 * t156;
+        let t159 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t132 * t133 - t147 * t157;
+        ::overact::guard::platform(t159, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t159, 0.4800000000000003, "actuators")?;
+        let t160 = 1.0 / t159;
+        let t161 = g1_wz_leg2 * actuator_velocities[1];
+        let t163 = minus_g1_wz_leg3 * actuator_velocities[2];
+        let t165 = g1_vx_leg2 * actuator_velocities[1];
+        let t167 = g1_vx_leg3 * actuator_velocities[2];
+        let t168 = t165 - t31 + t167;
+        let t171 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t173 = minus_g1_vy_leg3 * actuator_velocities[2];
+        let t176 = t32 - t171 - t173 + t168 * t153;
+        let rate_3_leg1 = t160 * (t33 + t161 - t163 - t168 * t133 - t157 * t176);
+        let t180 = t43 * rate_3_leg1;
+        let t181 = rate_3_leg1 * t180;
+        let t183 = t51 * rate_3_leg1;
+        let t184 = rate_3_leg1 * t183;
+        let t188 = t113 + t53 * 5.0;
+        let minus_g2_vy_leg2 = t188 * t75;
+        let t192 = t156 * t176 - t157 * rate_3_leg1;
+        let t196 = t45 * 5.0 - t73;
+        let minus_g2_vx_leg2 = t196 * t75;
+        let t202 = t168 * t108 + t153 * t192 - t133 * rate_3_leg1;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t192 + t180)
+            + minus_g2_vx_leg2 * (t202 + t183);
+        let t206 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t208 = t73 * t181 + t113 * t184 - 0.2 * t206;
+        let t209 = actuator_velocities[1] * actuator_velocities[1];
+        let t211 = 2.5 * (t61 - 0.08);
+        let minus_rate_dot_1_leg2 = t75 * (t208 - t209 * t211);
+        let t215 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t217 = t5 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
-        let t232 = t2 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t213 - t228)
-            + minus_g2_vy_leg1 * (t202 - t232);
-        let t236 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t237 = 0.04 * t236;
-        let t238 = rate_3_leg1 * t232;
-        let t240 = rate_3_leg1 * t228;
-        let t244 = actuator_velocities[0] * actuator_velocities[0];
-        let t245 = t10 - 0.08;
-        let t246 = 0.5 * t245;
-        let rate_dot_1_leg1 = t18 * (t237 - (t16 * t238 + t24 * t240) + t244 * t246);
-        let t250 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t253 = t87 * rate_3_leg1;
-        let t254 = rate_3_leg1 * t253;
-        let t256 = t80 * rate_3_leg1;
-        let t257 = rate_3_leg1 * t256;
-        let t262 = 2.5 * t103 - 4.330127018922193 * t108;
-        let g2_vy_leg3 = t262 * t113;
-        let t268 = 4.330127018922193 * t103 + 2.5 * t108;
-        let minus_g2_vx_leg3 = t268 * t113;
-        let rate_2_leg3 = g2_vy_leg3 * (t202 + t256) - minus_g2_vx_leg3 * (t213 - t253);
-        let t273 = rate_2_leg3 * rate_2_leg3;
-        let t274 = 0.2 * t273;
-        let t276 = actuator_velocities[2] * actuator_velocities[2];
-        let t277 = t98 - 0.08;
-        let t278 = 2.5 * t277;
-        let rate_dot_1_leg3 = t113 * (t130 * t254 - t111 * t257 + t274 + t276 * t278);
-        let t282 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t284 = g1_vx_leg2 * t226 - minus_g1_vx_leg1 * t250 + g1_vx_leg3 * t282;
-        let t292 = g1_vy_leg1 * t250 - minus_g1_vy_leg2 * t226 - minus_g1_vy_leg3 * t282
-            + t162 * t284;
-        let rate_dot_3_leg1 = t169
-            * (g1_wz_leg1 * t250 + g1_wz_leg2 * t226 - minus_g1_wz_leg3 * t282
-                - t142 * t284 - t166 * t292);
-        let t305 = t165 * t292 - t166 * rate_dot_3_leg1;
-        let t309 = t117 * t284 + t162 * t305 - t142 * rate_dot_3_leg1;
-        let t310 = t5 * rate_dot_3_leg1;
-        let t312 = t309 - t310 + t238;
-        let t314 = t2 * rate_dot_3_leg1;
-        let t316 = t305 - t314 - t240;
-        let t320 = t15 * t312 + t23 * t316 + 0.04 * t244;
-        let minus_rate_dot_2_leg1 = t18 * (t320 + t236 * t246);
+        let t221 = t2 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t202 - t217)
+            + minus_g2_vy_leg1 * (t192 - t221);
+        let t225 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t227 = rate_3_leg1 * t221;
+        let t229 = rate_3_leg1 * t217;
+        let t232 = 0.04 * t225 - (t16 * t227 + t24 * t229);
+        let t233 = actuator_velocities[0] * actuator_velocities[0];
+        let t234 = t10 - 0.08;
+        let t235 = 0.5 * t234;
+        let rate_dot_1_leg1 = t18 * (t232 + t233 * t235);
+        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t242 = t50 * rate_3_leg1;
+        let t243 = rate_3_leg1 * t242;
+        let t245 = t42 * rate_3_leg1;
+        let t246 = rate_3_leg1 * t245;
+        let t250 = t121 + t82 * 5.0;
+        let minus_g2_vy_leg3 = t250 * t104;
+        let t255 = t80 * 5.0 - t102;
+        let minus_g2_vx_leg3 = t255 * t104;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t192 + t245)
+            + minus_g2_vx_leg3 * (t202 - t242);
+        let t260 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t262 = t121 * t243 - t102 * t246 + 0.2 * t260;
+        let t263 = actuator_velocities[2] * actuator_velocities[2];
+        let t265 = 2.5 * (t91 - 0.08);
+        let rate_dot_1_leg3 = t104 * (t262 + t263 * t265);
+        let t269 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t271 = g1_vx_leg2 * t215 - minus_g1_vx_leg1 * t239 + g1_vx_leg3 * t269;
+        let t279 = g1_vy_leg1 * t239 - minus_g1_vy_leg2 * t215 - minus_g1_vy_leg3 * t269
+            + t153 * t271;
+        let rate_dot_3_leg1 = t160
+            * (g1_wz_leg1 * t239 + g1_wz_leg2 * t215 - minus_g1_wz_leg3 * t269
+                - t133 * t271 - t157 * t279);
+        let t292 = t156 * t279 - t157 * rate_dot_3_leg1;
+        let t296 = t108 * t271 + t153 * t292 - t133 * rate_dot_3_leg1;
+        let t298 = t227 - t5 * rate_dot_3_leg1;
+        let t302 = t229 + t2 * rate_dot_3_leg1;
+        let t307 = t15 * (t296 + t298) + t23 * (t292 - t302) + 0.04 * t233;
+        let minus_rate_dot_2_leg1 = t18 * (t307 + t225 * t235);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t5 * minus_g2_vx_leg1;
-        let t334 = t236 * (5.0 * t17) + 2.5 * t245 * minus_rate_dot_2_leg1;
-        let t340 = 5.0 * (t17 * t244) + 2.5 * (t245 * actuator_accelerations[0]);
-        let t353 = 5.0 * (t24 * t316 - t16 * t312 + t237);
-        let t355 = 5.0 * t320;
-        let t368 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t374 = minus_rate_2_leg1 + rate_3_leg1;
-        let t379 = g1_vx_leg2 * actuator_accelerations[1];
-        let t380 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t381 = g1_wz_leg2 * actuator_accelerations[1];
-        let t387 = t309 + t47 * rate_dot_3_leg1 - t190;
-        let t391 = t305 + t41 * rate_dot_3_leg1 + t193;
-        let t395 = t207 * t387 - t198 * t391 + 0.2 * t220;
-        let minus_rate_dot_2_leg2 = t73 * (t395 + t217 * t222);
-        let g2_wz_leg2 = t41 * g2_vy_leg2 - t47 * minus_g2_vx_leg2;
-        let t408 = t217 * (5.0 * t72) + t222 * minus_rate_dot_2_leg2;
-        let t414 = 5.0 * (t72 * t220) + 2.5 * (t221 * actuator_accelerations[1]);
-        let t427 = t122 * t391 - t71 * t387 - t218;
-        let t440 = rate_2_leg2 - actuator_velocities[1];
-        let t446 = rate_3_leg1 - rate_2_leg2;
-        let t451 = g1_vx_leg3 * actuator_accelerations[2];
-        let t452 = minus_g1_vy_leg3 * actuator_accelerations[2];
-        let t453 = minus_g1_wz_leg3 * actuator_accelerations[2];
-        let t459 = t305 + t80 * rate_dot_3_leg1 - t254;
-        let t463 = t309 - t87 * rate_dot_3_leg1 - t257;
-        let t467 = t262 * t459 - t268 * t463 - 0.2 * t276;
-        let rate_dot_2_leg3 = t113 * (t467 - t273 * t278);
-        let g2_wz_leg3 = t80 * g2_vy_leg3 + t87 * minus_g2_vx_leg3;
-        let t480 = t278 * rate_dot_2_leg3 - t273 * (5.0 * t112);
-        let t486 = 5.0 * (t112 * t276) + 2.5 * (t277 * actuator_accelerations[2]);
-        let t498 = t111 * t463 - t130 * t459 + t274;
-        let t512 = rate_2_leg3 - actuator_velocities[2];
-        let t518 = rate_3_leg1 - rate_2_leg3;
-        let t524 = 10.0 * (t240 + t314);
-        let t526 = 10.0 * (t310 - t238);
+        let t317 = 5.0 * t17;
+        let t319 = 2.5 * t234;
+        let t321 = t225 * t317 + t319 * minus_rate_dot_2_leg1;
+        let t325 = t233 * t317 + actuator_accelerations[0] * t319;
+        let t336 = 5.0 * (t232 + t17 * t239);
+        let t338 = 5.0 * t307;
+        let t351 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t357 = minus_rate_2_leg1 + rate_3_leg1;
+        let t362 = g1_vx_leg2 * actuator_accelerations[1];
+        let t363 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t364 = g1_wz_leg2 * actuator_accelerations[1];
+        let t378 = t196 * (t296 + t51 * rate_dot_3_leg1 - t181)
+            + t188 * (t292 + t43 * rate_dot_3_leg1 + t184) + 0.2 * t209;
+        let minus_rate_dot_2_leg2 = t75 * (t378 + t206 * t211);
+        let minus_g2_wz_leg2 = t43 * minus_g2_vy_leg2 + t51 * minus_g2_vx_leg2;
+        let t388 = 5.0 * t74;
+        let t391 = t206 * t388 + t211 * minus_rate_dot_2_leg2;
+        let t395 = t209 * t388 + actuator_accelerations[1] * t211;
+        let t406 = t208 - t215 * t388;
+        let t420 = -(minus_rate_2_leg2 + actuator_velocities[1]);
+        let t426 = rate_3_leg1 + minus_rate_2_leg2;
+        let t431 = g1_vx_leg3 * actuator_accelerations[2];
+        let t432 = minus_g1_vy_leg3 * actuator_accelerations[2];
+        let t433 = minus_g1_wz_leg3 * actuator_accelerations[2];
+        let t447 = t250 * (t292 + t42 * rate_dot_3_leg1 - t243)
+            + t255 * (t296 - t50 * rate_dot_3_leg1 - t246) + 0.2 * t263;
+        let minus_rate_dot_2_leg3 = t104 * (t447 + t260 * t265);
+        let g2_wz_leg3 = t50 * minus_g2_vx_leg3 - t42 * minus_g2_vy_leg3;
+        let t458 = 5.0 * t103;
+        let t460 = t265 * minus_rate_dot_2_leg3 + t260 * t458;
+        let t464 = t263 * t458 + actuator_accelerations[2] * t265;
+        let t474 = t262 + t269 * t458;
+        let t489 = -(minus_rate_2_leg3 + actuator_velocities[2]);
+        let t495 = rate_3_leg1 + minus_rate_2_leg3;
+        let t500 = 10.0 * t302;
+        let t501 = 10.0 * t298;
         Ok([
             [
                 -t20, -t20, -t31,
                 -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
                 -minus_g1_vx_leg1, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g1_vx_leg1 * t334 - minus_g2_vx_leg1 * t340,
-                minus_g2_vx_leg1 * t353 - minus_g1_vx_leg1 * t355, -(0.04 * t20),
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t368),
-                ::overact::math::signed(minus_g2_vx_leg1, t374), t379, t379, t174,
+                minus_g1_vx_leg1 * t321 - minus_g2_vx_leg1 * t325,
+                minus_g2_vx_leg1 * t336 - minus_g1_vx_leg1 * t338, -(0.04 * t20),
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t351),
+                ::overact::math::signed(minus_g2_vx_leg1, t357), t362, t362, t165,
                 ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]), g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t408 + minus_g2_vx_leg2 * t414),
-                g1_vx_leg2 * t395 - minus_g2_vx_leg2 * t427, 0.04 * t379,
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t440),
-                ::overact::math::signed(minus_g2_vx_leg2, t446), t451, t451, t176,
+                -(g1_vx_leg2 * t391 + minus_g2_vx_leg2 * t395),
+                g1_vx_leg2 * t378 - minus_g2_vx_leg2 * t406, 0.04 * t362,
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t420),
+                ::overact::math::signed(minus_g2_vx_leg2, t426), t431, t431, t167,
                 ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), g1_vx_leg3,
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t480 - minus_g2_vx_leg3 * t486,
-                minus_g2_vx_leg3 * t498 - g1_vx_leg3 * t467, 0.04 * t451,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t512),
-                ::overact::math::signed(minus_g2_vx_leg3, t518), 0.0, -t524, -t526, t309,
+                minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                -(g1_vx_leg3 * t460 + minus_g2_vx_leg3 * t464),
+                minus_g2_vx_leg3 * t474 + g1_vx_leg3 * t447, 0.04 * t431,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t489),
+                ::overact::math::signed(minus_g2_vx_leg3, t495), 0.0, -t500, t501, t296,
             ],
             [
                 t26, t26, t32, ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
                 g1_vy_leg1, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t334 + minus_g2_vy_leg1 * t340),
-                g1_vy_leg1 * t355 + minus_g2_vy_leg1 * t353, 0.04 * t26,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t368),
-                ::overact::math::signed(minus_g2_vy_leg1, t374), -t380, -t380, -t180,
+                -(g1_vy_leg1 * t321 + minus_g2_vy_leg1 * t325),
+                g1_vy_leg1 * t338 + minus_g2_vy_leg1 * t336, 0.04 * t26,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t351),
+                ::overact::math::signed(minus_g2_vy_leg1, t357), -t363, -t363, -t171,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
-                -minus_g1_vy_leg2, -(g2_vy_leg2 * minus_rate_dot_2_leg2),
-                minus_g1_vy_leg2 * t408 + g2_vy_leg2 * t414,
-                g2_vy_leg2 * t427 - minus_g1_vy_leg2 * t395, -(0.04 * t380),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t440),
-                -::overact::math::signed(g2_vy_leg2, t446), -t452, -t452, -t182,
+                -minus_g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
+                minus_g1_vy_leg2 * t391 - minus_g2_vy_leg2 * t395,
+                -(minus_g2_vy_leg2 * t406 + minus_g1_vy_leg2 * t378), -(0.04 * t363),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t420),
+                ::overact::math::signed(minus_g2_vy_leg2, t426), -t432, -t432, -t173,
                 -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]),
-                -minus_g1_vy_leg3, g2_vy_leg3 * rate_dot_2_leg3,
-                g2_vy_leg3 * t486 - minus_g1_vy_leg3 * t480,
-                minus_g1_vy_leg3 * t467 - g2_vy_leg3 * t498, -(0.04 * t452),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t512),
-                -::overact::math::signed(g2_vy_leg3, t518), 0.0, t526, -t524, t305,
+                -minus_g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                minus_g1_vy_leg3 * t460 - minus_g2_vy_leg3 * t464,
+                minus_g2_vy_leg3 * t474 - minus_g1_vy_leg3 * t447, -(0.04 * t432),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t489),
+                ::overact::math::signed(minus_g2_vy_leg3, t495), 0.0, -t501, -t500, t292,
             ],
             [
                 t30, t30, t33, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 g1_wz_leg1, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                g2_wz_leg1 * t340 - g1_wz_leg1 * t334, g1_wz_leg1 * t355 - g2_wz_leg1 * t353,
-                0.04 * t30, -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t368),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t374), t381, t381, t170,
+                g2_wz_leg1 * t325 - g1_wz_leg1 * t321, g1_wz_leg1 * t338 - g2_wz_leg1 * t336,
+                0.04 * t30, -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t351),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t357), t364, t364, t161,
                 ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg2 * t414 - g1_wz_leg2 * t408,
-                g1_wz_leg2 * t395 + g2_wz_leg2 * t427, 0.04 * t381,
-                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t440),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t446), -t453, -t453, -t172,
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
+                -(minus_g2_wz_leg2 * t395 + g1_wz_leg2 * t391),
+                g1_wz_leg2 * t378 - minus_g2_wz_leg2 * t406, 0.04 * t364,
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t420),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t426), -t433, -t433, -t163,
                 -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]),
-                -minus_g1_wz_leg3, g2_wz_leg3 * rate_dot_2_leg3,
-                g2_wz_leg3 * t486 - minus_g1_wz_leg3 * t480,
-                minus_g1_wz_leg3 * t467 - g2_wz_leg3 * t498, -(0.04 * t453),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t512),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t518), rate_dot_3_leg1,
-                c_phi * t305 - s_phi * t309, -(c_phi * t309 + s_phi * t305), 0.0,
+                -minus_g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
+                g2_wz_leg3 * t464 + minus_g1_wz_leg3 * t460,
+                -(minus_g1_wz_leg3 * t447 + g2_wz_leg3 * t474), -(0.04 * t433),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t489),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t495), rate_dot_3_leg1,
+                c_phi * t292 - s_phi * t296, -(s_phi * t292 + c_phi * t296), 0.0,
             ],
         ])
     }
@@ -1949,7 +1954,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 475 operations (174 additions, 294 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 432 intermediates.
+    /// 463 operations (172 additions, 284 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 420 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1972,20 +1977,18 @@ impl Planar3Rrr {
         let t14 = 1.0 / t13;
         let t17 = 0.5 * t4 - t7 * t12;
         let t18 = t4 - t17;
-        let t19 = t6 * acceleration[2];
-        let t21 = t2 * twist[2];
-        let t22 = twist[2] * t21;
-        let t23 = acceleration[1] - t19 - t22;
+        let t19 = t2 * twist[2];
+        let t22 = twist[2] * t19 + t6 * acceleration[2];
+        let t23 = acceleration[1] - t22;
         let t27 = 0.5 * t7 + t4 * t12;
         let t28 = t27 - t7;
-        let t29 = t2 * acceleration[2];
-        let t31 = t6 * twist[2];
-        let t32 = twist[2] * t31;
-        let t33 = acceleration[0] - t29 + t32;
+        let t29 = t6 * twist[2];
+        let t32 = twist[2] * t29 - t2 * acceleration[2];
+        let t33 = acceleration[0] + t32;
         let minus_g2_vx_leg1 = t27 * t14;
-        let t37 = twist[0] - t21;
+        let t37 = twist[0] - t19;
         let minus_g2_vy_leg1 = t17 * t14;
-        let t40 = twist[1] - t31;
+        let t40 = twist[1] - t29;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t37 + minus_g2_vy_leg1 * t40;
         let t43 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t45 = t18 * t23 - t28 * t33 + 0.04 * t43;
@@ -1996,189 +1999,190 @@ impl Planar3Rrr {
         let t52 = t9 - 0.08;
         let t53 = 0.5 * t52;
         let rate_dot_1_leg1 = t14 * (t45 + t51 * t53);
-        let t60 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t63 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t65 = pose[0] + t63 + 0.3031088913245535;
-        let t68 = pose[1] - t60 + 0.175;
-        let t70 = 0.8660254037844386 * t65 + 0.5 * t68;
-        let t73 = 0.5 * t65 - 0.8660254037844386 * t68;
-        let t76 = t70 * t70 + t73 * t73;
-        let t78 = 0.04 / t76 - 0.25;
-        ::overact::guard::reach(t78, "leg2")?;
-        let t79 = ::overact::math::sqrt(t78);
-        let t82 = t73 * t79 - 0.5 * t70;
-        let t83 = t70 + t82;
-        let t87 = 0.5 * t73 + t70 * t79;
-        let t88 = t73 - t87;
-        let t90 = 4.330127018922193 * t83 + 2.5 * t88;
-        let t91 = t76 * t79;
-        ::overact::guard::leg(t91, 0.03903123748998999, "leg2")?;
-        let t92 = 0.2 / t91;
-        let g1_vx_leg2 = t90 * t92;
-        let t97 = 4.330127018922193 * t88 - 2.5 * t83;
-        let minus_g1_vy_leg2 = t97 * t92;
-        let g1_wz_leg2 = t60 * g1_vx_leg2 - t63 * minus_g1_vy_leg2;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t104 = 0.1 * minus_c123_leg2;
-        let t106 = pose[0] + t104 - 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t111 = 0.1 * minus_s123_leg2;
-        let t113 = pose[1] + t111 + 0.175;
-        let t115 = 0.8660254037844386 * t106 - 0.5 * t113;
-        let t119 = 0.5 * t106 + 0.8660254037844386 * t113;
-        let t122 = t115 * t115 + t119 * t119;
-        let t124 = 0.04 / t122 - 0.25;
-        ::overact::guard::reach(t124, "leg3")?;
-        let t125 = ::overact::math::sqrt(t124);
-        let t127 = 0.5 * t115 + t119 * t125;
-        let t128 = t115 - t127;
-        let t132 = 0.5 * t119 - t115 * t125;
-        let t133 = t119 - t132;
-        let t135 = 2.5 * t128 - 4.330127018922193 * t133;
-        let t136 = t122 * t125;
-        ::overact::guard::leg(t136, 0.03903123748998999, "leg3")?;
-        let t137 = 0.2 / t136;
-        let minus_g1_vy_leg3 = t135 * t137;
-        let t143 = 4.330127018922193 * t128 + 2.5 * t133;
-        let g1_vx_leg3 = t143 * t137;
-        let minus_g1_wz_leg3 = t104 * minus_g1_vy_leg3 + t111 * g1_vx_leg3;
+        let t61 = 0.1 * minus_s123_leg2;
+        let t62 = t2 + t61;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t66 = 0.1 * minus_c123_leg2;
+        let t67 = t6 - t66;
+        let t69 = pose[0] + t67 + 0.3031088913245535;
+        let t72 = pose[1] - t62 + 0.175;
+        let t74 = 0.8660254037844386 * t69 + 0.5 * t72;
+        let t77 = 0.5 * t69 - 0.8660254037844386 * t72;
+        let t80 = t74 * t74 + t77 * t77;
+        let t82 = 0.04 / t80 - 0.25;
+        ::overact::guard::reach(t82, "leg2")?;
+        let t83 = ::overact::math::sqrt(t82);
+        let t86 = t77 * t83 - 0.5 * t74;
+        let t87 = t74 + t86;
+        let t91 = 0.5 * t77 + t74 * t83;
+        let t92 = t77 - t91;
+        let t94 = 4.330127018922193 * t87 + 2.5 * t92;
+        let t95 = t80 * t83;
+        ::overact::guard::leg(t95, 0.03903123748998999, "leg2")?;
+        let t96 = 0.2 / t95;
+        let g1_vx_leg2 = t94 * t96;
+        let t101 = 4.330127018922193 * t92 - 2.5 * t87;
+        let minus_g1_vy_leg2 = t101 * t96;
+        let g1_wz_leg2 = t62 * g1_vx_leg2 - t67 * minus_g1_vy_leg2;
+        let t106 = pose[0] + t66 - 0.3031088913245535;
+        let t109 = pose[1] + t61 + 0.175;
+        let t111 = 0.8660254037844386 * t106 - 0.5 * t109;
+        let t115 = 0.5 * t106 + 0.8660254037844386 * t109;
+        let t118 = t111 * t111 + t115 * t115;
+        let t120 = 0.04 / t118 - 0.25;
+        ::overact::guard::reach(t120, "leg3")?;
+        let t121 = ::overact::math::sqrt(t120);
+        let t123 = 0.5 * t111 + t115 * t121;
+        let t124 = t111 - t123;
+        let t128 = 0.5 * t115 - t111 * t121;
+        let t129 = t115 - t128;
+        let t131 = 2.5 * t124 - 4.330127018922193 * t129;
+        let t132 = t118 * t121;
+        ::overact::guard::leg(t132, 0.03903123748998999, "leg3")?;
+        let t133 = 0.2 / t132;
+        let minus_g1_vy_leg3 = t131 * t133;
+        let t139 = 4.330127018922193 * t124 + 2.5 * t129;
+        let g1_vx_leg3 = t139 * t133;
+        let minus_g1_wz_leg3 = t66 * minus_g1_vy_leg3 + t61 * g1_vx_leg3;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
-        let t154 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t158 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let t163 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t165 = g1_vx_leg3 * t154 - minus_g1_vy_leg3 * t158 - minus_g1_wz_leg3 * t163;
-        ::overact::guard::platform(t165, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t165, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t165, 27.286461953085094, "kept actuators")?;
-        let t166 = 1.0 / t165;
-        let t167 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t166;
-        let t172 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t166;
+        let t150 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t154 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let t159 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t161 = g1_vx_leg3 * t150 - minus_g1_vy_leg3 * t154 - minus_g1_wz_leg3 * t159;
+        ::overact::guard::platform(t161, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t161, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t161, 27.286461953085094, "kept actuators")?;
+        let t162 = 1.0 / t161;
+        let t163 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t162;
+        let t168 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t162;
         let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t181 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t166;
-        let t183 = minus_g2_vx_leg1 * t167 + minus_g2_vy_leg1 * t172 + g2_wz_leg1 * t181;
-        let t188 = t27 * t33 + t17 * t23 + 0.04 * t51;
-        let minus_rate_dot_2_leg1 = t14 * (t188 + t43 * t53);
-        let t196 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t166;
-        let t201 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t166;
-        let t207 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t166;
-        let t209 = minus_g2_vy_leg1 * t196 - minus_g2_vx_leg1 * t201 + g2_wz_leg1 * t207;
-        let t211 = t163 * t166;
-        let t213 = t154 * t166;
-        let t215 = t158 * t166;
-        let t218 = g2_wz_leg1 * t211
-            - (minus_g2_vx_leg1 * t213 + minus_g2_vy_leg1 * t215);
-        let t229 = 5.0 * (t13 * t51) + 2.5 * (t52 * rate_dot_1_leg1);
-        let t235 = 5.0 * t45;
-        let t242 = rate_1_leg1 + minus_rate_2_leg1;
-        let t247 = minus_rate_2_leg1 + twist[2];
-        let t255 = t60 * twist[2];
-        let t257 = acceleration[1] + t63 * acceleration[2] + twist[2] * t255;
-        let t261 = t63 * twist[2];
-        let t263 = acceleration[0] + t60 * acceleration[2] - twist[2] * t261;
-        let t268 = 4.330127018922193 * t87 + 2.5 * t82;
-        let g2_vy_leg2 = t268 * t92;
-        let t270 = twist[1] + t261;
-        let t274 = 2.5 * t87 - 4.330127018922193 * t82;
-        let minus_g2_vx_leg2 = t274 * t92;
-        let t276 = twist[0] + t255;
-        let rate_2_leg2 = g2_vy_leg2 * t270 - minus_g2_vx_leg2 * t276;
-        let t279 = rate_2_leg2 * rate_2_leg2;
-        let t281 = t97 * t257 - t90 * t263 - 0.2 * t279;
-        let rate_1_leg2 = g1_vx_leg2 * t276 - minus_g1_vy_leg2 * t270;
-        let t285 = rate_1_leg2 * rate_1_leg2;
-        let t286 = t76 - 0.08;
-        let t287 = 2.5 * t286;
-        let minus_rate_dot_1_leg2 = t92 * (t281 - t285 * t287);
-        let g2_wz_leg2 = t63 * g2_vy_leg2 - t60 * minus_g2_vx_leg2;
-        let t299 = g2_vy_leg2 * t172 - minus_g2_vx_leg2 * t167 - g2_wz_leg2 * t181;
-        let t304 = t274 * t263 - t268 * t257 + 0.2 * t285;
-        let minus_rate_dot_2_leg2 = t92 * (t304 + t279 * t287);
-        let t313 = g2_wz_leg2 * t207 - (minus_g2_vx_leg2 * t201 + g2_vy_leg2 * t196);
-        let t319 = g2_vy_leg2 * t215 - minus_g2_vx_leg2 * t213 + g2_wz_leg2 * t211;
-        let t325 = 5.0 * (t91 * t285) - 2.5 * (t286 * minus_rate_dot_1_leg2);
-        let t339 = rate_2_leg2 - rate_1_leg2;
-        let t345 = twist[2] - rate_2_leg2;
-        let t353 = t104 * twist[2];
-        let t355 = acceleration[0] - t111 * acceleration[2] - twist[2] * t353;
-        let t359 = t111 * twist[2];
-        let t361 = acceleration[1] + t104 * acceleration[2] - twist[2] * t359;
-        let t366 = 2.5 * t127 - 4.330127018922193 * t132;
-        let g2_vy_leg3 = t366 * t137;
-        let t368 = twist[1] + t353;
-        let t372 = 4.330127018922193 * t127 + 2.5 * t132;
-        let minus_g2_vx_leg3 = t372 * t137;
-        let t374 = twist[0] - t359;
-        let rate_2_leg3 = g2_vy_leg3 * t368 - minus_g2_vx_leg3 * t374;
-        let t377 = rate_2_leg3 * rate_2_leg3;
-        let t379 = t143 * t355 - t135 * t361 + 0.2 * t377;
-        let rate_1_leg3 = g1_vx_leg3 * t374 - minus_g1_vy_leg3 * t368;
-        let t383 = rate_1_leg3 * rate_1_leg3;
-        let t384 = t122 - 0.08;
-        let t385 = 2.5 * t384;
-        let rate_dot_1_leg3 = t137 * (t379 + t383 * t385);
-        let g2_wz_leg3 = t104 * g2_vy_leg3 + t111 * minus_g2_vx_leg3;
-        let t397 = g2_vy_leg3 * t172 - minus_g2_vx_leg3 * t167 - g2_wz_leg3 * t181;
-        let t402 = t366 * t361 - t372 * t355 - 0.2 * t383;
-        let rate_dot_2_leg3 = t137 * (t402 - t377 * t385);
-        let t411 = g2_wz_leg3 * t207 - (minus_g2_vx_leg3 * t201 + g2_vy_leg3 * t196);
-        let t417 = g2_vy_leg3 * t215 - minus_g2_vx_leg3 * t213 + g2_wz_leg3 * t211;
-        let t423 = 5.0 * (t136 * t383) + 2.5 * (t384 * rate_dot_1_leg3);
-        let t437 = rate_2_leg3 - rate_1_leg3;
-        let t443 = twist[2] - rate_2_leg3;
-        let t453 = 10.0 * (t29 - t32);
-        let t456 = 10.0 * (t22 + t19);
-        let t461 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t476 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t177 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t162;
+        let t179 = minus_g2_vx_leg1 * t163 + minus_g2_vy_leg1 * t168 + g2_wz_leg1 * t177;
+        let t184 = t27 * t33 + t17 * t23 + 0.04 * t51;
+        let minus_rate_dot_2_leg1 = t14 * (t184 + t43 * t53);
+        let t192 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t162;
+        let t197 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
+            * t162;
+        let t203 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t162;
+        let t205 = minus_g2_vy_leg1 * t192 - minus_g2_vx_leg1 * t197 + g2_wz_leg1 * t203;
+        let t207 = t159 * t162;
+        let t209 = t150 * t162;
+        let t211 = t154 * t162;
+        let t214 = g2_wz_leg1 * t207
+            - (minus_g2_vx_leg1 * t209 + minus_g2_vy_leg1 * t211);
+        let t216 = 5.0 * t13;
+        let t218 = 2.5 * t52;
+        let t223 = t51 * t216 + rate_dot_1_leg1 * t218;
+        let t229 = 5.0 * t45;
+        let t236 = rate_1_leg1 + minus_rate_2_leg1;
+        let t241 = minus_rate_2_leg1 + twist[2];
+        let t249 = t62 * twist[2];
+        let t251 = acceleration[1] + t67 * acceleration[2] + twist[2] * t249;
+        let t255 = t67 * twist[2];
+        let t257 = acceleration[0] + t62 * acceleration[2] - twist[2] * t255;
+        let t262 = 4.330127018922193 * t91 + 2.5 * t86;
+        let g2_vy_leg2 = t262 * t96;
+        let t264 = twist[1] + t255;
+        let t268 = 2.5 * t91 - 4.330127018922193 * t86;
+        let minus_g2_vx_leg2 = t268 * t96;
+        let t270 = twist[0] + t249;
+        let rate_2_leg2 = g2_vy_leg2 * t264 - minus_g2_vx_leg2 * t270;
+        let t273 = rate_2_leg2 * rate_2_leg2;
+        let t275 = t101 * t251 - t94 * t257 - 0.2 * t273;
+        let rate_1_leg2 = g1_vx_leg2 * t270 - minus_g1_vy_leg2 * t264;
+        let t279 = rate_1_leg2 * rate_1_leg2;
+        let t281 = 2.5 * (t80 - 0.08);
+        let minus_rate_dot_1_leg2 = t96 * (t275 - t279 * t281);
+        let g2_wz_leg2 = t67 * g2_vy_leg2 - t62 * minus_g2_vx_leg2;
+        let t293 = g2_vy_leg2 * t168 - minus_g2_vx_leg2 * t163 - g2_wz_leg2 * t177;
+        let t298 = t268 * t257 - t262 * t251 + 0.2 * t279;
+        let minus_rate_dot_2_leg2 = t96 * (t298 + t273 * t281);
+        let t307 = g2_wz_leg2 * t203 - (minus_g2_vx_leg2 * t197 + g2_vy_leg2 * t192);
+        let t313 = g2_vy_leg2 * t211 - minus_g2_vx_leg2 * t209 + g2_wz_leg2 * t207;
+        let t315 = 5.0 * t95;
+        let t318 = t279 * t315 - t281 * minus_rate_dot_1_leg2;
+        let t331 = rate_2_leg2 - rate_1_leg2;
+        let t337 = twist[2] - rate_2_leg2;
+        let t345 = t66 * twist[2];
+        let t347 = acceleration[0] - t61 * acceleration[2] - twist[2] * t345;
+        let t351 = t61 * twist[2];
+        let t353 = acceleration[1] + t66 * acceleration[2] - twist[2] * t351;
+        let t358 = 2.5 * t123 - 4.330127018922193 * t128;
+        let g2_vy_leg3 = t358 * t133;
+        let t360 = twist[1] + t345;
+        let t364 = 4.330127018922193 * t123 + 2.5 * t128;
+        let minus_g2_vx_leg3 = t364 * t133;
+        let t366 = twist[0] - t351;
+        let rate_2_leg3 = g2_vy_leg3 * t360 - minus_g2_vx_leg3 * t366;
+        let t369 = rate_2_leg3 * rate_2_leg3;
+        let t371 = t139 * t347 - t131 * t353 + 0.2 * t369;
+        let rate_1_leg3 = g1_vx_leg3 * t366 - minus_g1_vy_leg3 * t360;
+        let t375 = rate_1_leg3 * rate_1_leg3;
+        let t377 = 2.5 * (t118 - 0.08);
+        let rate_dot_1_leg3 = t133 * (t371 + t375 * t377);
+        let g2_wz_leg3 = t66 * g2_vy_leg3 + t61 * minus_g2_vx_leg3;
+        let t389 = g2_vy_leg3 * t168 - minus_g2_vx_leg3 * t163 - g2_wz_leg3 * t177;
+        let t394 = t358 * t353 - t364 * t347 - 0.2 * t375;
+        let rate_dot_2_leg3 = t133 * (t394 - t369 * t377);
+        let t403 = g2_wz_leg3 * t203 - (minus_g2_vx_leg3 * t197 + g2_vy_leg3 * t192);
+        let t409 = g2_vy_leg3 * t211 - minus_g2_vx_leg3 * t209 + g2_wz_leg3 * t207;
+        let t411 = 5.0 * t132;
+        let t414 = t375 * t411 + t377 * rate_dot_1_leg3;
+        let t427 = rate_2_leg3 - rate_1_leg3;
+        let t433 = twist[2] - rate_2_leg3;
+        let t442 = 10.0 * t22;
+        let t444 = 10.0 * t32;
+        let t449 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t467 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, t183 * minus_rate_dot_2_leg1,
-                -(t43 * (5.0 * t13) + minus_rate_dot_2_leg1 * (2.5 * t52) + t183 * t229),
-                5.0 * t188 + t183 * t235, 0.04 * rate_dot_1_leg1,
-                ::overact::math::signed(1.0 + t183, t242),
-                ::overact::math::signed(t183 - t181, t247), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t299 * minus_rate_dot_2_leg2), t299 * t325, t299 * t281, 0.0,
-                ::overact::math::signed(t299, t339), -::overact::math::signed(t299 + t181, t345),
-                0.0, 0.0, 0.0, 0.0, 0.0, t397 * rate_dot_2_leg3, t397 * t423, -(t397 * t379), 0.0,
-                ::overact::math::signed(t397, t437), -::overact::math::signed(t397 + t181, t443),
-                -(t181 * acceleration[2]), t172 * t453 - t167 * t456 - t181 * t461,
-                t181 * t476 - (t167 * t453 + t172 * t456),
-                t167 * acceleration[0] + t172 * acceleration[1],
+                1.0, t179 * minus_rate_dot_2_leg1,
+                -(t43 * t216 + minus_rate_dot_2_leg1 * t218 + t179 * t223),
+                5.0 * t184 + t179 * t229, 0.04 * rate_dot_1_leg1,
+                ::overact::math::signed(1.0 + t179, t236),
+                ::overact::math::signed(t179 - t177, t241), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t293 * minus_rate_dot_2_leg2), t293 * t318, t293 * t275, 0.0,
+                ::overact::math::signed(t293, t331), -::overact::math::signed(t293 + t177, t337),
+                0.0, 0.0, 0.0, 0.0, 0.0, t389 * rate_dot_2_leg3, t389 * t414, -(t389 * t371), 0.0,
+                ::overact::math::signed(t389, t427), -::overact::math::signed(t389 + t177, t433),
+                -(t177 * acceleration[2]), -(t163 * t442 + t168 * t444 + t177 * t449),
+                t163 * t444 - t168 * t442 + t177 * t467,
+                t163 * acceleration[0] + t168 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t209 * minus_rate_dot_2_leg1), t209 * t229,
-                -(t209 * t235), 0.0, -::overact::math::signed(t209, t242),
-                ::overact::math::signed(t207 - t209, t247), -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t205 * minus_rate_dot_2_leg1), t205 * t223,
+                -(t205 * t229), 0.0, -::overact::math::signed(t205, t236),
+                ::overact::math::signed(t203 - t205, t241), -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0,
-                -(t313 * minus_rate_dot_2_leg2),
-                t313 * t325 - (t279 * (5.0 * t91) + t287 * minus_rate_dot_2_leg2),
-                t304 + t313 * t281, -(0.04 * minus_rate_dot_1_leg2),
-                ::overact::math::signed(t313 - 1.0, t339),
-                ::overact::math::signed(t207 - t313, t345), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t411 * rate_dot_2_leg3, t411 * t423, -(t411 * t379), 0.0,
-                ::overact::math::signed(t411, t437), ::overact::math::signed(t207 - t411, t443),
-                t207 * acceleration[2], t207 * t461 - (t201 * t456 + t196 * t453),
-                t196 * t456 - t201 * t453 - t207 * t476,
-                t201 * acceleration[0] - t196 * acceleration[1],
+                -(t307 * minus_rate_dot_2_leg2),
+                t307 * t318 - (t273 * t315 + t281 * minus_rate_dot_2_leg2), t298 + t307 * t275,
+                -(0.04 * minus_rate_dot_1_leg2), ::overact::math::signed(t307 - 1.0, t331),
+                ::overact::math::signed(t203 - t307, t337), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t403 * rate_dot_2_leg3, t403 * t414, -(t403 * t371), 0.0,
+                ::overact::math::signed(t403, t427), ::overact::math::signed(t203 - t403, t433),
+                t203 * acceleration[2], t192 * t444 - t197 * t442 + t203 * t449,
+                t197 * t444 + t192 * t442 - t203 * t467,
+                t197 * acceleration[0] - t192 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t218 * minus_rate_dot_2_leg1), t218 * t229,
-                -(t218 * t235), 0.0, -::overact::math::signed(t218, t242),
-                ::overact::math::signed(t211 - t218, t247), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t319 * minus_rate_dot_2_leg2), t319 * t325, t319 * t281, 0.0,
-                ::overact::math::signed(t319, t339), ::overact::math::signed(t211 - t319, t345),
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t214 * minus_rate_dot_2_leg1), t214 * t223,
+                -(t214 * t229), 0.0, -::overact::math::signed(t214, t236),
+                ::overact::math::signed(t207 - t214, t241), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t313 * minus_rate_dot_2_leg2), t313 * t318, t313 * t275, 0.0,
+                ::overact::math::signed(t313, t331), ::overact::math::signed(t207 - t313, t337),
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t417 * rate_dot_2_leg3,
-                t385 * rate_dot_2_leg3 - t377 * (5.0 * t136) + t417 * t423, -(t402 + t417 * t379),
-                0.04 * rate_dot_1_leg3, ::overact::math::signed(t417 - 1.0, t437),
-                ::overact::math::signed(t211 - t417, t443), t211 * acceleration[2],
-                t215 * t453 - t213 * t456 + t211 * t461, -(t213 * t453 + t215 * t456 + t211 * t476),
-                t213 * acceleration[0] + t215 * acceleration[1],
+                1.0, t409 * rate_dot_2_leg3, t377 * rate_dot_2_leg3 - t369 * t411 + t409 * t414,
+                -(t394 + t409 * t371), 0.04 * rate_dot_1_leg3,
+                ::overact::math::signed(t409 - 1.0, t427),
+                ::overact::math::signed(t207 - t409, t433), t207 * acceleration[2],
+                t207 * t449 - (t209 * t442 + t211 * t444), t209 * t444 - t211 * t442 - t207 * t467,
+                t209 * acceleration[0] + t211 * acceleration[1],
             ],
         ])
     }
@@ -2193,7 +2197,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 413 operations (144 additions, 265 multiplications, 4 divisions), 0 square roots, 7 trigonometric pairs, 21 signs, 379 intermediates.
+    /// 405 operations (142 additions, 259 multiplications, 4 divisions), 0 square roots, 7 trigonometric pairs, 21 signs, 371 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2213,23 +2217,22 @@ impl Planar3Rrr {
         let t2 = 5.0 / s2_leg1;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
-        let t13 = 0.1 * s_phi;
-        let t14 = t13 * acceleration[2];
-        let t16 = 0.1 * c_phi;
-        let t17 = t16 * twist[2];
-        let t18 = twist[2] * t17;
-        let t19 = acceleration[1] - t14 - t18;
-        let t21 = t16 * acceleration[2];
-        let t23 = t13 * twist[2];
-        let t24 = twist[2] * t23;
-        let t25 = acceleration[0] - t21 + t24;
+        let t13 = 0.1 * c_phi;
+        let t14 = t13 * twist[2];
+        let t16 = 0.1 * s_phi;
+        let t18 = twist[2] * t14 + t16 * acceleration[2];
+        let t19 = acceleration[1] - t18;
+        let t21 = t16 * twist[2];
+        let t24 = twist[2] * t21 - t13 * acceleration[2];
+        let t25 = acceleration[0] + t24;
         let g2_vx_leg1 = s1_leg1 * t2;
-        let t29 = twist[0] - t17;
+        let t29 = twist[0] - t14;
         let minus_g2_vy_leg1 = c1_leg1 * t2;
-        let t32 = twist[1] - t23;
+        let t32 = twist[1] - t21;
         let rate_2_leg1 = g2_vx_leg1 * t29 - minus_g2_vy_leg1 * t32;
         let t35 = rate_2_leg1 * rate_2_leg1;
-        let t37 = c12_leg1 * t19 - s12_leg1 * t25 + 0.2 * t35;
+        let t36 = 0.2 * t35;
+        let t37 = c12_leg1 * t19 - s12_leg1 * t25 + t36;
         let g1_vy_leg1 = c12_leg1 * t2;
         let minus_g1_vx_leg1 = s12_leg1 * t2;
         let rate_1_leg1 = g1_vy_leg1 * t32 - minus_g1_vx_leg1 * t29;
@@ -2260,7 +2263,7 @@ impl Planar3Rrr {
         let t97 = t73 + t72;
         let t99 = t64 - t65;
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t97 + g1_vx_leg3 * t99;
-        let g1_wz_leg1 = minus_g1_vx_leg1 * t16 - g1_vy_leg1 * t13;
+        let g1_wz_leg1 = minus_g1_vx_leg1 * t13 - g1_vy_leg1 * t16;
         let t109 = g1_wz_leg1 * g1_vx_leg2 + minus_g1_vx_leg1 * g1_wz_leg2;
         let t113 = g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2;
         let t118 = g1_vy_leg1 * g1_vx_leg2 - minus_g1_vx_leg1 * minus_g1_vy_leg2;
@@ -2272,7 +2275,7 @@ impl Planar3Rrr {
         let t122 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t121;
         let t127 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
             * t121;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t13 - g2_vx_leg1 * t16;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t16 - g2_vx_leg1 * t13;
         let t136 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
             * t121;
         let t138 = minus_g2_vy_leg1 * t122 - g2_vx_leg1 * t127 + g2_wz_leg1 * t136;
@@ -2290,109 +2293,109 @@ impl Planar3Rrr {
         let t168 = t113 * t121;
         let t171 = t118 * t121;
         let t173 = minus_g2_vy_leg1 * t166 - g2_vx_leg1 * t168 + g2_wz_leg1 * t171;
-        let t182 = s2_leg1 * t142 + c2_leg1 * (0.2 * rate_dot_1_leg1);
-        let t193 = rate_2_leg1 - rate_1_leg1;
-        let t198 = twist[2] - rate_2_leg1;
-        let t206 = t66 * twist[2];
-        let t208 = acceleration[1] + t74 * acceleration[2] + twist[2] * t206;
-        let t212 = t74 * twist[2];
-        let t214 = acceleration[0] + t66 * acceleration[2] - twist[2] * t212;
-        let t219 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t219 * t62;
-        let t221 = twist[1] + t212;
-        let t225 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t225 * t62;
-        let t227 = twist[0] + t206;
-        let rate_2_leg2 = g2_vy_leg2 * t221 - minus_g2_vx_leg2 * t227;
-        let t230 = rate_2_leg2 * rate_2_leg2;
-        let t232 = t70 * t208 - t61 * t214 - 0.2 * t230;
-        let rate_1_leg2 = g1_vx_leg2 * t227 - minus_g1_vy_leg2 * t221;
-        let t236 = rate_1_leg2 * rate_1_leg2;
-        let t237 = 0.2 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t62 * (t232 - t236 * t237);
+        let t180 = s2_leg1 * t142 + t44 * rate_dot_1_leg1;
+        let t191 = rate_2_leg1 - rate_1_leg1;
+        let t196 = twist[2] - rate_2_leg1;
+        let t204 = t66 * twist[2];
+        let t206 = acceleration[1] + t74 * acceleration[2] + twist[2] * t204;
+        let t210 = t74 * twist[2];
+        let t212 = acceleration[0] + t66 * acceleration[2] - twist[2] * t210;
+        let t217 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = t217 * t62;
+        let t219 = twist[1] + t210;
+        let t223 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = t223 * t62;
+        let t225 = twist[0] + t204;
+        let rate_2_leg2 = g2_vy_leg2 * t219 - minus_g2_vx_leg2 * t225;
+        let t228 = rate_2_leg2 * rate_2_leg2;
+        let t229 = 0.2 * t228;
+        let t230 = t70 * t206 - t61 * t212 - t229;
+        let rate_1_leg2 = g1_vx_leg2 * t225 - minus_g1_vy_leg2 * t219;
+        let t234 = rate_1_leg2 * rate_1_leg2;
+        let t235 = 0.2 * c2_leg2;
+        let minus_rate_dot_1_leg2 = t62 * (t230 - t234 * t235);
         let g2_wz_leg2 = g2_vy_leg2 * t74 - minus_g2_vx_leg2 * t66;
-        let t249 = minus_g2_vx_leg2 * t127 - g2_vy_leg2 * t122 + g2_wz_leg2 * t136;
-        let t253 = 0.2 * t236;
-        let t254 = t225 * t214 - t219 * t208 + t253;
-        let minus_rate_dot_2_leg2 = t62 * (t254 + t230 * t237);
-        let t263 = minus_g2_vx_leg2 * t151 + g2_vy_leg2 * t156 - g2_wz_leg2 * t162;
-        let t269 = minus_g2_vx_leg2 * t168 - g2_vy_leg2 * t166 + g2_wz_leg2 * t171;
-        let t274 = s2_leg2 * t253 - c2_leg2 * (0.2 * minus_rate_dot_1_leg2);
-        let t288 = rate_2_leg2 - rate_1_leg2;
-        let t294 = twist[2] - rate_2_leg2;
-        let t302 = t97 * twist[2];
-        let t304 = acceleration[0] - t99 * acceleration[2] - twist[2] * t302;
-        let t308 = t99 * twist[2];
-        let t310 = acceleration[1] + t97 * acceleration[2] - twist[2] * t308;
-        let t315 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t315 * t90;
-        let t317 = twist[1] + t302;
-        let t321 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t321 * t90;
-        let t323 = twist[0] - t308;
-        let rate_2_leg3 = g2_vy_leg3 * t317 - minus_g2_vx_leg3 * t323;
-        let t326 = rate_2_leg3 * rate_2_leg3;
-        let t328 = t89 * t304 - t95 * t310 + 0.2 * t326;
-        let rate_1_leg3 = g1_vx_leg3 * t323 - minus_g1_vy_leg3 * t317;
-        let t332 = rate_1_leg3 * rate_1_leg3;
-        let t333 = 0.2 * c2_leg3;
-        let rate_dot_1_leg3 = t90 * (t328 + t332 * t333);
+        let t247 = minus_g2_vx_leg2 * t127 - g2_vy_leg2 * t122 + g2_wz_leg2 * t136;
+        let t251 = 0.2 * t234;
+        let t252 = t223 * t212 - t217 * t206 + t251;
+        let minus_rate_dot_2_leg2 = t62 * (t252 + t228 * t235);
+        let t261 = minus_g2_vx_leg2 * t151 + g2_vy_leg2 * t156 - g2_wz_leg2 * t162;
+        let t267 = minus_g2_vx_leg2 * t168 - g2_vy_leg2 * t166 + g2_wz_leg2 * t171;
+        let t271 = s2_leg2 * t251 - t235 * minus_rate_dot_1_leg2;
+        let t284 = rate_2_leg2 - rate_1_leg2;
+        let t290 = twist[2] - rate_2_leg2;
+        let t298 = t97 * twist[2];
+        let t300 = acceleration[0] - t99 * acceleration[2] - twist[2] * t298;
+        let t304 = t99 * twist[2];
+        let t306 = acceleration[1] + t97 * acceleration[2] - twist[2] * t304;
+        let t311 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t311 * t90;
+        let t313 = twist[1] + t298;
+        let t317 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = t317 * t90;
+        let t319 = twist[0] - t304;
+        let rate_2_leg3 = g2_vy_leg3 * t313 - minus_g2_vx_leg3 * t319;
+        let t322 = rate_2_leg3 * rate_2_leg3;
+        let t323 = 0.2 * t322;
+        let t324 = t89 * t300 - t95 * t306 + t323;
+        let rate_1_leg3 = g1_vx_leg3 * t319 - minus_g1_vy_leg3 * t313;
+        let t328 = rate_1_leg3 * rate_1_leg3;
+        let t329 = 0.2 * c2_leg3;
+        let rate_dot_1_leg3 = t90 * (t324 + t328 * t329);
         let g2_wz_leg3 = g2_vy_leg3 * t97 + minus_g2_vx_leg3 * t99;
-        let t345 = minus_g2_vx_leg3 * t127 - g2_vy_leg3 * t122 + g2_wz_leg3 * t136;
-        let t349 = 0.2 * t332;
-        let t350 = t315 * t310 - t321 * t304 - t349;
-        let rate_dot_2_leg3 = t90 * (t350 - t326 * t333);
-        let t359 = minus_g2_vx_leg3 * t151 + g2_vy_leg3 * t156 - g2_wz_leg3 * t162;
-        let t365 = minus_g2_vx_leg3 * t168 - g2_vy_leg3 * t166 + g2_wz_leg3 * t171;
-        let t370 = s2_leg3 * t349 + c2_leg3 * (0.2 * rate_dot_1_leg3);
-        let t384 = rate_2_leg3 - rate_1_leg3;
-        let t390 = twist[2] - rate_2_leg3;
-        let t400 = 10.0 * (t18 + t14);
-        let t403 = 10.0 * (t21 - t24);
-        let t408 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t426 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t341 = minus_g2_vx_leg3 * t127 - g2_vy_leg3 * t122 + g2_wz_leg3 * t136;
+        let t345 = 0.2 * t328;
+        let t346 = t311 * t306 - t317 * t300 - t345;
+        let rate_dot_2_leg3 = t90 * (t346 - t322 * t329);
+        let t355 = minus_g2_vx_leg3 * t151 + g2_vy_leg3 * t156 - g2_wz_leg3 * t162;
+        let t361 = minus_g2_vx_leg3 * t168 - g2_vy_leg3 * t166 + g2_wz_leg3 * t171;
+        let t365 = s2_leg3 * t345 + t329 * rate_dot_1_leg3;
+        let t378 = rate_2_leg3 - rate_1_leg3;
+        let t384 = twist[2] - rate_2_leg3;
+        let t393 = 10.0 * t18;
+        let t395 = 10.0 * t24;
+        let t400 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t418 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, t138 * rate_dot_2_leg1,
-                t44 * rate_dot_2_leg1 - t35 * (0.2 * s2_leg1) + t138 * t182, -(t143 + t138 * t37),
-                0.04 * rate_dot_1_leg1, ::overact::math::signed(t138 - 1.0, t193),
-                ::overact::math::signed(t136 - t138, t198), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t249 * minus_rate_dot_2_leg2), t249 * t274, t249 * t232, 0.0,
-                ::overact::math::signed(t249, t288), ::overact::math::signed(t136 - t249, t294),
-                0.0, 0.0, 0.0, 0.0, 0.0, t345 * rate_dot_2_leg3, t345 * t370, -(t345 * t328), 0.0,
-                ::overact::math::signed(t345, t384), ::overact::math::signed(t136 - t345, t390),
-                t136 * acceleration[2], t127 * t400 - t122 * t403 + t136 * t408,
-                t127 * t403 + t122 * t400 - t136 * t426,
+                1.0, t138 * rate_dot_2_leg1, t44 * rate_dot_2_leg1 - s2_leg1 * t36 + t138 * t180,
+                -(t143 + t138 * t37), 0.04 * rate_dot_1_leg1,
+                ::overact::math::signed(t138 - 1.0, t191),
+                ::overact::math::signed(t136 - t138, t196), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t247 * minus_rate_dot_2_leg2), t247 * t271, t247 * t230, 0.0,
+                ::overact::math::signed(t247, t284), ::overact::math::signed(t136 - t247, t290),
+                0.0, 0.0, 0.0, 0.0, 0.0, t341 * rate_dot_2_leg3, t341 * t365, -(t341 * t324), 0.0,
+                ::overact::math::signed(t341, t378), ::overact::math::signed(t136 - t341, t384),
+                t136 * acceleration[2], t127 * t393 + t122 * t395 + t136 * t400,
+                t122 * t393 - t127 * t395 - t136 * t418,
                 -(t127 * acceleration[0] + t122 * acceleration[1]),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t164 * rate_dot_2_leg1), -(t164 * t182), t164 * t37, 0.0,
-                -::overact::math::signed(t164, t193), ::overact::math::signed(t164 - t162, t198),
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t164 * rate_dot_2_leg1), -(t164 * t180), t164 * t37, 0.0,
+                -::overact::math::signed(t164, t191), ::overact::math::signed(t164 - t162, t196),
                 -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2, rate_1_leg2,
-                ::overact::math::sign(rate_1_leg2), 1.0, -(t263 * minus_rate_dot_2_leg2),
-                t263 * t274 - (t230 * (0.2 * s2_leg2) + t237 * minus_rate_dot_2_leg2),
-                t254 + t263 * t232, -(0.04 * minus_rate_dot_1_leg2),
-                ::overact::math::signed(t263 - 1.0, t288),
-                -::overact::math::signed(t263 + t162, t294), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t359 * rate_dot_2_leg3, t359 * t370, -(t359 * t328), 0.0,
-                ::overact::math::signed(t359, t384), -::overact::math::signed(t359 + t162, t390),
-                -(t162 * acceleration[2]), t151 * t400 + t156 * t403 - t162 * t408,
-                t151 * t403 - t156 * t400 + t162 * t426,
+                ::overact::math::sign(rate_1_leg2), 1.0, -(t261 * minus_rate_dot_2_leg2),
+                t261 * t271 - (s2_leg2 * t229 + t235 * minus_rate_dot_2_leg2), t252 + t261 * t230,
+                -(0.04 * minus_rate_dot_1_leg2), ::overact::math::signed(t261 - 1.0, t284),
+                -::overact::math::signed(t261 + t162, t290), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t355 * rate_dot_2_leg3, t355 * t365, -(t355 * t324), 0.0,
+                ::overact::math::signed(t355, t378), -::overact::math::signed(t355 + t162, t384),
+                -(t162 * acceleration[2]), t151 * t393 - t156 * t395 - t162 * t400,
+                t162 * t418 - (t151 * t395 + t156 * t393),
                 t156 * acceleration[1] - t151 * acceleration[0],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t173 * rate_dot_2_leg1, t173 * t182, -(t173 * t37), 0.0,
-                ::overact::math::signed(t173, t193), ::overact::math::signed(t171 - t173, t198),
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t269 * minus_rate_dot_2_leg2), t269 * t274, t269 * t232,
-                0.0, ::overact::math::signed(t269, t288),
-                ::overact::math::signed(t171 - t269, t294), rate_dot_1_leg3, rate_dot_1_leg3,
-                rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0, t365 * rate_dot_2_leg3,
-                t333 * rate_dot_2_leg3 - t326 * (0.2 * s2_leg3) + t365 * t370,
-                -(t350 + t365 * t328), 0.04 * rate_dot_1_leg3,
-                ::overact::math::signed(t365 - 1.0, t384),
-                ::overact::math::signed(t171 - t365, t390), t171 * acceleration[2],
-                t168 * t400 - t166 * t403 + t171 * t408, t168 * t403 + t166 * t400 - t171 * t426,
+                0.0, 0.0, 0.0, 0.0, 0.0, t173 * rate_dot_2_leg1, t173 * t180, -(t173 * t37), 0.0,
+                ::overact::math::signed(t173, t191), ::overact::math::signed(t171 - t173, t196),
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t267 * minus_rate_dot_2_leg2), t267 * t271, t267 * t230,
+                0.0, ::overact::math::signed(t267, t284),
+                ::overact::math::signed(t171 - t267, t290), rate_dot_1_leg3, rate_dot_1_leg3,
+                rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0, t361 * rate_dot_2_leg3,
+                t329 * rate_dot_2_leg3 - s2_leg3 * t323 + t361 * t365, -(t346 + t361 * t324),
+                0.04 * rate_dot_1_leg3, ::overact::math::signed(t361 - 1.0, t378),
+                ::overact::math::signed(t171 - t361, t384), t171 * acceleration[2],
+                t168 * t393 + t166 * t395 + t171 * t400, t166 * t393 - t168 * t395 - t171 * t418,
                 -(t168 * acceleration[0] + t166 * acceleration[1]),
             ],
         ])
@@ -2408,7 +2411,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 585 operations (220 additions, 355 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 548 intermediates.
+    /// 573 operations (218 additions, 345 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 536 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2433,255 +2436,256 @@ impl Planar3Rrr {
         ::overact::guard::leg(t17, 0.03903123748998999, "leg1")?;
         let t18 = 1.0 / t17;
         let minus_g2_vx_leg1 = t16 * t18;
-        let t22 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t25 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t27 = pose[0] + t25 + 0.3031088913245535;
-        let t30 = pose[1] - t22 + 0.175;
-        let t32 = 0.8660254037844386 * t27 + 0.5 * t30;
-        let t35 = 0.5 * t27 - 0.8660254037844386 * t30;
-        let t38 = t32 * t32 + t35 * t35;
-        let t40 = 0.04 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg2")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t44 = t35 * t41 - 0.5 * t32;
-        let t45 = t32 + t44;
-        let t49 = 0.5 * t35 + t32 * t41;
-        let t50 = t35 - t49;
-        let t52 = 4.330127018922193 * t45 + 2.5 * t50;
-        let t53 = t38 * t41;
-        ::overact::guard::leg(t53, 0.03903123748998999, "leg2")?;
-        let t54 = 0.2 / t53;
-        let g1_vx_leg2 = t52 * t54;
-        let t59 = 4.330127018922193 * t50 - 2.5 * t45;
-        let minus_g1_vy_leg2 = t59 * t54;
-        let g1_wz_leg2 = t22 * g1_vx_leg2 - t25 * minus_g1_vy_leg2;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t66 = 0.1 * minus_c123_leg2;
-        let t68 = pose[0] + t66 - 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t73 = 0.1 * minus_s123_leg2;
-        let t75 = pose[1] + t73 + 0.175;
-        let t77 = 0.8660254037844386 * t68 - 0.5 * t75;
-        let t81 = 0.5 * t68 + 0.8660254037844386 * t75;
-        let t84 = t77 * t77 + t81 * t81;
-        let t86 = 0.04 / t84 - 0.25;
-        ::overact::guard::reach(t86, "leg3")?;
-        let t87 = ::overact::math::sqrt(t86);
-        let t89 = 0.5 * t77 + t81 * t87;
-        let t90 = t77 - t89;
-        let t94 = 0.5 * t81 - t77 * t87;
-        let t95 = t81 - t94;
-        let t97 = 2.5 * t90 - 4.330127018922193 * t95;
-        let t98 = t84 * t87;
-        ::overact::guard::leg(t98, 0.03903123748998999, "leg3")?;
-        let t99 = 0.2 / t98;
-        let minus_g1_vy_leg3 = t97 * t99;
-        let t105 = 4.330127018922193 * t90 + 2.5 * t95;
-        let g1_vx_leg3 = t105 * t99;
-        let minus_g1_wz_leg3 = t66 * minus_g1_vy_leg3 + t73 * g1_vx_leg3;
-        let t113 = 0.5 * t8 - t4 * t14;
-        let t114 = t8 - t113;
-        let g1_vy_leg1 = t114 * t18;
-        let t117 = t16 - t4;
-        let minus_g1_vx_leg1 = t117 * t18;
+        let t23 = 0.1 * minus_s123_leg2;
+        let t24 = t6 + t23;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t28 = 0.1 * minus_c123_leg2;
+        let t29 = t3 - t28;
+        let t31 = pose[0] + t29 + 0.3031088913245535;
+        let t34 = pose[1] - t24 + 0.175;
+        let t36 = 0.8660254037844386 * t31 + 0.5 * t34;
+        let t39 = 0.5 * t31 - 0.8660254037844386 * t34;
+        let t42 = t36 * t36 + t39 * t39;
+        let t44 = 0.04 / t42 - 0.25;
+        ::overact::guard::reach(t44, "leg2")?;
+        let t45 = ::overact::math::sqrt(t44);
+        let t48 = t39 * t45 - 0.5 * t36;
+        let t49 = t36 + t48;
+        let t53 = 0.5 * t39 + t36 * t45;
+        let t54 = t39 - t53;
+        let t56 = 4.330127018922193 * t49 + 2.5 * t54;
+        let t57 = t42 * t45;
+        ::overact::guard::leg(t57, 0.03903123748998999, "leg2")?;
+        let t58 = 0.2 / t57;
+        let g1_vx_leg2 = t56 * t58;
+        let t63 = 4.330127018922193 * t54 - 2.5 * t49;
+        let minus_g1_vy_leg2 = t63 * t58;
+        let g1_wz_leg2 = t24 * g1_vx_leg2 - t29 * minus_g1_vy_leg2;
+        let t68 = pose[0] + t28 - 0.3031088913245535;
+        let t71 = pose[1] + t23 + 0.175;
+        let t73 = 0.8660254037844386 * t68 - 0.5 * t71;
+        let t77 = 0.5 * t68 + 0.8660254037844386 * t71;
+        let t80 = t73 * t73 + t77 * t77;
+        let t82 = 0.04 / t80 - 0.25;
+        ::overact::guard::reach(t82, "leg3")?;
+        let t83 = ::overact::math::sqrt(t82);
+        let t85 = 0.5 * t73 + t77 * t83;
+        let t86 = t73 - t85;
+        let t90 = 0.5 * t77 - t73 * t83;
+        let t91 = t77 - t90;
+        let t93 = 2.5 * t86 - 4.330127018922193 * t91;
+        let t94 = t80 * t83;
+        ::overact::guard::leg(t94, 0.03903123748998999, "leg3")?;
+        let t95 = 0.2 / t94;
+        let minus_g1_vy_leg3 = t93 * t95;
+        let t101 = 4.330127018922193 * t86 + 2.5 * t91;
+        let g1_vx_leg3 = t101 * t95;
+        let minus_g1_wz_leg3 = t28 * minus_g1_vy_leg3 + t23 * g1_vx_leg3;
+        let t109 = 0.5 * t8 - t4 * t14;
+        let t110 = t8 - t109;
+        let g1_vy_leg1 = t110 * t18;
+        let t113 = t16 - t4;
+        let minus_g1_vx_leg1 = t113 * t18;
         let g1_wz_leg1 = t6 * minus_g1_vx_leg1 - t3 * g1_vy_leg1;
-        let t123 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t127 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let t132 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t134 = g1_vx_leg3 * t123 - minus_g1_vy_leg3 * t127 - minus_g1_wz_leg3 * t132;
-        ::overact::guard::platform(t134, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t134, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t134, 27.286461953085094, "kept actuators")?;
-        let t135 = 1.0 / t134;
-        let t136 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t135;
-        let minus_g2_vy_leg1 = t113 * t18;
-        let t142 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t135;
+        let t119 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t123 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let t128 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t130 = g1_vx_leg3 * t119 - minus_g1_vy_leg3 * t123 - minus_g1_wz_leg3 * t128;
+        ::overact::guard::platform(t130, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t130, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t130, 27.286461953085094, "kept actuators")?;
+        let t131 = 1.0 / t130;
+        let t132 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t131;
+        let minus_g2_vy_leg1 = t109 * t18;
+        let t138 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t131;
         let g2_wz_leg1 = t3 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t151 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t135;
-        let t153 = minus_g2_vx_leg1 * t136 + minus_g2_vy_leg1 * t142 + g2_wz_leg1 * t151;
-        let t158 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t147 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t131;
+        let t149 = minus_g2_vx_leg1 * t132 + minus_g2_vy_leg1 * t138 + g2_wz_leg1 * t147;
+        let t154 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t158, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t158, 39.38461538461539, "actuators")?;
-        let t159 = 1.0 / t158;
-        let t169 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        ::overact::guard::platform(t154, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t154, 39.38461538461539, "actuators")?;
+        let t155 = 1.0 / t154;
+        let t165 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t170 = t169 * t159;
-        let t182 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t166 = t165 * t155;
+        let t178 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t184 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t182 * t170;
-        let t190 = t182 * t159;
-        let t192 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t182 * t190;
-        ::overact::guard::platform(t192, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t192, 39.384615384615394, "actuators")?;
+        let t180 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t178 * t166;
+        let t186 = t178 * t155;
+        let t188 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t178 * t186;
+        ::overact::guard::platform(t188, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t188, 39.384615384615394, "actuators")?;
+        let t189 = 1.0 / t188;
+        let t190 = t180 * t189;
+        let t192 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t165 * t166 - t180 * t190;
+        ::overact::guard::platform(t192, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t192, 0.4800000000000003, "actuators")?;
         let t193 = 1.0 / t192;
-        let t194 = t184 * t193;
-        let t196 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t169 * t170 - t184 * t194;
-        ::overact::guard::platform(t196, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t196, 0.4800000000000003, "actuators")?;
-        let t197 = 1.0 / t196;
-        let t207 = g1_vx_leg2 * actuator_velocities[1]
+        let t203 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t216 = g1_vy_leg1 * actuator_velocities[0]
+        let t212 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t207 * t190;
-        let rate_3_leg1 = t197
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t203 * t186;
+        let rate_3_leg1 = t193
             * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t207 * t170 - t194 * t216);
-        let t220 = t25 * rate_3_leg1;
-        let t221 = rate_3_leg1 * t220;
-        let t223 = t22 * rate_3_leg1;
-        let t224 = rate_3_leg1 * t223;
-        let t229 = 4.330127018922193 * t49 + 2.5 * t44;
-        let g2_vy_leg2 = t229 * t54;
-        let t233 = t193 * t216 - t194 * rate_3_leg1;
-        let t238 = 2.5 * t49 - 4.330127018922193 * t44;
-        let minus_g2_vx_leg2 = t238 * t54;
-        let t244 = t207 * t159 + t190 * t233 - t170 * rate_3_leg1;
-        let rate_2_leg2 = g2_vy_leg2 * (t233 + t220) - minus_g2_vx_leg2 * (t244 + t223);
-        let t248 = rate_2_leg2 * rate_2_leg2;
-        let t249 = 0.2 * t248;
-        let t251 = actuator_velocities[1] * actuator_velocities[1];
-        let t252 = t38 - 0.08;
-        let t253 = 2.5 * t252;
-        let minus_rate_dot_1_leg2 = t54 * (t52 * t221 + t59 * t224 - t249 - t251 * t253);
-        let t257 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t259 = t6 * rate_3_leg1;
-        let t262 = t3 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t244 - t259)
-            + minus_g2_vy_leg1 * (t233 - t262);
-        let t266 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t267 = 0.04 * t266;
-        let t268 = rate_3_leg1 * t262;
-        let t270 = rate_3_leg1 * t259;
-        let t274 = actuator_velocities[0] * actuator_velocities[0];
-        let t275 = t11 - 0.08;
-        let t276 = 0.5 * t275;
-        let rate_dot_1_leg1 = t18 * (t267 - (t117 * t268 + t114 * t270) + t274 * t276);
-        let t280 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t283 = t73 * rate_3_leg1;
-        let t284 = rate_3_leg1 * t283;
-        let t286 = t66 * rate_3_leg1;
-        let t287 = rate_3_leg1 * t286;
-        let t292 = 2.5 * t89 - 4.330127018922193 * t94;
-        let g2_vy_leg3 = t292 * t99;
-        let t298 = 4.330127018922193 * t89 + 2.5 * t94;
-        let minus_g2_vx_leg3 = t298 * t99;
-        let rate_2_leg3 = g2_vy_leg3 * (t233 + t286) - minus_g2_vx_leg3 * (t244 - t283);
-        let t303 = rate_2_leg3 * rate_2_leg3;
-        let t304 = 0.2 * t303;
-        let t306 = actuator_velocities[2] * actuator_velocities[2];
-        let t307 = t84 - 0.08;
-        let t308 = 2.5 * t307;
-        let rate_dot_1_leg3 = t99 * (t97 * t284 - t105 * t287 + t304 + t306 * t308);
-        let t312 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t314 = g1_vx_leg2 * t257 - minus_g1_vx_leg1 * t280 + g1_vx_leg3 * t312;
-        let t322 = g1_vy_leg1 * t280 - minus_g1_vy_leg2 * t257 - minus_g1_vy_leg3 * t312
-            + t190 * t314;
-        let rate_dot_3_leg1 = t197
-            * (g1_wz_leg1 * t280 + g1_wz_leg2 * t257 - minus_g1_wz_leg3 * t312
-                - t170 * t314 - t194 * t322);
-        let t335 = t193 * t322 - t194 * rate_dot_3_leg1;
-        let t339 = t159 * t314 + t190 * t335 - t170 * rate_dot_3_leg1;
-        let t340 = t6 * rate_dot_3_leg1;
-        let t342 = t339 - t340 + t268;
-        let t344 = t3 * rate_dot_3_leg1;
-        let t346 = t335 - t344 - t270;
-        let t350 = t16 * t342 + t113 * t346 + 0.04 * t274;
-        let minus_rate_dot_2_leg1 = t18 * (t350 + t266 * t276);
-        let t358 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t135;
-        let t363 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t135;
-        let t369 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t135;
-        let t371 = minus_g2_vy_leg1 * t358 - minus_g2_vx_leg1 * t363 + g2_wz_leg1 * t369;
-        let t373 = t132 * t135;
-        let t375 = t123 * t135;
-        let t377 = t127 * t135;
-        let t380 = g2_wz_leg1 * t373
-            - (minus_g2_vx_leg1 * t375 + minus_g2_vy_leg1 * t377);
-        let t391 = 5.0 * (t17 * t274) + 2.5 * (t275 * actuator_accelerations[0]);
-        let t401 = 5.0 * (t114 * t346 - t117 * t342 + t267);
-        let t408 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t413 = minus_rate_2_leg1 + rate_3_leg1;
-        let g2_wz_leg2 = t25 * g2_vy_leg2 - t22 * minus_g2_vx_leg2;
-        let t427 = g2_vy_leg2 * t142 - minus_g2_vx_leg2 * t136 - g2_wz_leg2 * t151;
-        let t430 = t339 + t22 * rate_dot_3_leg1 - t221;
-        let t434 = t335 + t25 * rate_dot_3_leg1 + t224;
-        let t438 = t238 * t430 - t229 * t434 + 0.2 * t251;
-        let minus_rate_dot_2_leg2 = t54 * (t438 + t248 * t253);
-        let t447 = g2_wz_leg2 * t369 - (minus_g2_vx_leg2 * t363 + g2_vy_leg2 * t358);
-        let t453 = g2_vy_leg2 * t377 - minus_g2_vx_leg2 * t375 + g2_wz_leg2 * t373;
-        let t459 = 5.0 * (t53 * t251) + 2.5 * (t252 * actuator_accelerations[1]);
-        let t471 = t59 * t434 - t52 * t430 - t249;
-        let t477 = rate_2_leg2 - actuator_velocities[1];
-        let t483 = rate_3_leg1 - rate_2_leg2;
-        let g2_wz_leg3 = t66 * g2_vy_leg3 + t73 * minus_g2_vx_leg3;
-        let t497 = g2_vy_leg3 * t142 - minus_g2_vx_leg3 * t136 - g2_wz_leg3 * t151;
-        let t500 = t335 + t66 * rate_dot_3_leg1 - t284;
-        let t504 = t339 - t73 * rate_dot_3_leg1 - t287;
-        let t508 = t292 * t500 - t298 * t504 - 0.2 * t306;
-        let rate_dot_2_leg3 = t99 * (t508 - t303 * t308);
-        let t517 = g2_wz_leg3 * t369 - (minus_g2_vx_leg3 * t363 + g2_vy_leg3 * t358);
-        let t523 = g2_vy_leg3 * t377 - minus_g2_vx_leg3 * t375 + g2_wz_leg3 * t373;
-        let t529 = 5.0 * (t98 * t306) + 2.5 * (t307 * actuator_accelerations[2]);
-        let t541 = t105 * t504 - t97 * t500 + t304;
-        let t547 = rate_2_leg3 - actuator_velocities[2];
-        let t553 = rate_3_leg1 - rate_2_leg3;
-        let t563 = 10.0 * (t340 - t268);
-        let t566 = 10.0 * (t270 + t344);
-        let t571 = c_phi * t335 - s_phi * t339;
-        let t586 = c_phi * t339 + s_phi * t335;
+                - minus_g1_wz_leg3 * actuator_velocities[2] - t203 * t166 - t190 * t212);
+        let t216 = t29 * rate_3_leg1;
+        let t217 = rate_3_leg1 * t216;
+        let t219 = t24 * rate_3_leg1;
+        let t220 = rate_3_leg1 * t219;
+        let t225 = 4.330127018922193 * t53 + 2.5 * t48;
+        let g2_vy_leg2 = t225 * t58;
+        let t229 = t189 * t212 - t190 * rate_3_leg1;
+        let t234 = 2.5 * t53 - 4.330127018922193 * t48;
+        let minus_g2_vx_leg2 = t234 * t58;
+        let t240 = t203 * t155 + t186 * t229 - t166 * rate_3_leg1;
+        let rate_2_leg2 = g2_vy_leg2 * (t229 + t216) - minus_g2_vx_leg2 * (t240 + t219);
+        let t244 = rate_2_leg2 * rate_2_leg2;
+        let t245 = 0.2 * t244;
+        let t247 = actuator_velocities[1] * actuator_velocities[1];
+        let t249 = 2.5 * (t42 - 0.08);
+        let minus_rate_dot_1_leg2 = t58 * (t56 * t217 + t63 * t220 - t245 - t247 * t249);
+        let t253 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t255 = t6 * rate_3_leg1;
+        let t258 = t3 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t240 - t255)
+            + minus_g2_vy_leg1 * (t229 - t258);
+        let t262 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t263 = 0.04 * t262;
+        let t264 = rate_3_leg1 * t258;
+        let t266 = rate_3_leg1 * t255;
+        let t270 = actuator_velocities[0] * actuator_velocities[0];
+        let t271 = t11 - 0.08;
+        let t272 = 0.5 * t271;
+        let rate_dot_1_leg1 = t18 * (t263 - (t113 * t264 + t110 * t266) + t270 * t272);
+        let t276 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t279 = t23 * rate_3_leg1;
+        let t280 = rate_3_leg1 * t279;
+        let t282 = t28 * rate_3_leg1;
+        let t283 = rate_3_leg1 * t282;
+        let t288 = 2.5 * t85 - 4.330127018922193 * t90;
+        let g2_vy_leg3 = t288 * t95;
+        let t294 = 4.330127018922193 * t85 + 2.5 * t90;
+        let minus_g2_vx_leg3 = t294 * t95;
+        let rate_2_leg3 = g2_vy_leg3 * (t229 + t282) - minus_g2_vx_leg3 * (t240 - t279);
+        let t299 = rate_2_leg3 * rate_2_leg3;
+        let t300 = 0.2 * t299;
+        let t302 = actuator_velocities[2] * actuator_velocities[2];
+        let t304 = 2.5 * (t80 - 0.08);
+        let rate_dot_1_leg3 = t95 * (t93 * t280 - t101 * t283 + t300 + t302 * t304);
+        let t308 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t310 = g1_vx_leg2 * t253 - minus_g1_vx_leg1 * t276 + g1_vx_leg3 * t308;
+        let t318 = g1_vy_leg1 * t276 - minus_g1_vy_leg2 * t253 - minus_g1_vy_leg3 * t308
+            + t186 * t310;
+        let rate_dot_3_leg1 = t193
+            * (g1_wz_leg1 * t276 + g1_wz_leg2 * t253 - minus_g1_wz_leg3 * t308
+                - t166 * t310 - t190 * t318);
+        let t331 = t189 * t318 - t190 * rate_dot_3_leg1;
+        let t335 = t155 * t310 + t186 * t331 - t166 * rate_dot_3_leg1;
+        let t337 = t264 - t6 * rate_dot_3_leg1;
+        let t338 = t335 + t337;
+        let t341 = t266 + t3 * rate_dot_3_leg1;
+        let t342 = t331 - t341;
+        let t346 = t16 * t338 + t109 * t342 + 0.04 * t270;
+        let minus_rate_dot_2_leg1 = t18 * (t346 + t262 * t272);
+        let t354 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t131;
+        let t359 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
+            * t131;
+        let t365 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t131;
+        let t367 = minus_g2_vy_leg1 * t354 - minus_g2_vx_leg1 * t359 + g2_wz_leg1 * t365;
+        let t369 = t128 * t131;
+        let t371 = t119 * t131;
+        let t373 = t123 * t131;
+        let t376 = g2_wz_leg1 * t369
+            - (minus_g2_vx_leg1 * t371 + minus_g2_vy_leg1 * t373);
+        let t378 = 5.0 * t17;
+        let t380 = 2.5 * t271;
+        let t385 = t270 * t378 + actuator_accelerations[0] * t380;
+        let t395 = 5.0 * (t110 * t342 - t113 * t338 + t263);
+        let t402 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t407 = minus_rate_2_leg1 + rate_3_leg1;
+        let g2_wz_leg2 = t29 * g2_vy_leg2 - t24 * minus_g2_vx_leg2;
+        let t421 = g2_vy_leg2 * t138 - minus_g2_vx_leg2 * t132 - g2_wz_leg2 * t147;
+        let t424 = t335 + t24 * rate_dot_3_leg1 - t217;
+        let t428 = t331 + t29 * rate_dot_3_leg1 + t220;
+        let t432 = t234 * t424 - t225 * t428 + 0.2 * t247;
+        let minus_rate_dot_2_leg2 = t58 * (t432 + t244 * t249);
+        let t441 = g2_wz_leg2 * t365 - (minus_g2_vx_leg2 * t359 + g2_vy_leg2 * t354);
+        let t447 = g2_vy_leg2 * t373 - minus_g2_vx_leg2 * t371 + g2_wz_leg2 * t369;
+        let t449 = 5.0 * t57;
+        let t452 = t247 * t449 + actuator_accelerations[1] * t249;
+        let t463 = t63 * t428 - t56 * t424 - t245;
+        let t469 = rate_2_leg2 - actuator_velocities[1];
+        let t475 = rate_3_leg1 - rate_2_leg2;
+        let g2_wz_leg3 = t28 * g2_vy_leg3 + t23 * minus_g2_vx_leg3;
+        let t489 = g2_vy_leg3 * t138 - minus_g2_vx_leg3 * t132 - g2_wz_leg3 * t147;
+        let t492 = t331 + t28 * rate_dot_3_leg1 - t280;
+        let t496 = t335 - t23 * rate_dot_3_leg1 - t283;
+        let t500 = t288 * t492 - t294 * t496 - 0.2 * t302;
+        let rate_dot_2_leg3 = t95 * (t500 - t299 * t304);
+        let t509 = g2_wz_leg3 * t365 - (minus_g2_vx_leg3 * t359 + g2_vy_leg3 * t354);
+        let t515 = g2_vy_leg3 * t373 - minus_g2_vx_leg3 * t371 + g2_wz_leg3 * t369;
+        let t517 = 5.0 * t94;
+        let t520 = t302 * t517 + actuator_accelerations[2] * t304;
+        let t531 = t101 * t496 - t93 * t492 + t300;
+        let t537 = rate_2_leg3 - actuator_velocities[2];
+        let t543 = rate_3_leg1 - rate_2_leg3;
+        let t552 = 10.0 * t341;
+        let t554 = 10.0 * t337;
+        let t559 = c_phi * t331 - s_phi * t335;
+        let t577 = s_phi * t331 + c_phi * t335;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, t153 * minus_rate_dot_2_leg1,
-                -(t266 * (5.0 * t17) + 2.5 * t275 * minus_rate_dot_2_leg1 + t153 * t391),
-                5.0 * t350 + t153 * t401, 0.04 * actuator_accelerations[0],
-                ::overact::math::signed(1.0 + t153, t408),
-                ::overact::math::signed(t153 - t151, t413), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t427 * minus_rate_dot_2_leg2), t427 * t459, t427 * t471, 0.0,
-                ::overact::math::signed(t427, t477), -::overact::math::signed(t427 + t151, t483),
-                0.0, 0.0, 0.0, 0.0, 0.0, t497 * rate_dot_2_leg3, t497 * t529, -(t497 * t541), 0.0,
-                ::overact::math::signed(t497, t547), -::overact::math::signed(t497 + t151, t553),
-                -(t151 * rate_dot_3_leg1), t142 * t563 - t136 * t566 - t151 * t571,
-                t151 * t586 - (t136 * t563 + t142 * t566), t136 * t339 + t142 * t335,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, t149 * minus_rate_dot_2_leg1,
+                -(t262 * t378 + t380 * minus_rate_dot_2_leg1 + t149 * t385),
+                5.0 * t346 + t149 * t395, 0.04 * actuator_accelerations[0],
+                ::overact::math::signed(1.0 + t149, t402),
+                ::overact::math::signed(t149 - t147, t407), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t421 * minus_rate_dot_2_leg2), t421 * t452, t421 * t463, 0.0,
+                ::overact::math::signed(t421, t469), -::overact::math::signed(t421 + t147, t475),
+                0.0, 0.0, 0.0, 0.0, 0.0, t489 * rate_dot_2_leg3, t489 * t520, -(t489 * t531), 0.0,
+                ::overact::math::signed(t489, t537), -::overact::math::signed(t489 + t147, t543),
+                -(t147 * rate_dot_3_leg1), -(t132 * t552 + t138 * t554 + t147 * t559),
+                t132 * t554 - t138 * t552 + t147 * t577, t132 * t335 + t138 * t331,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t371 * minus_rate_dot_2_leg1), t371 * t391,
-                -(t371 * t401), 0.0, -::overact::math::signed(t371, t408),
-                ::overact::math::signed(t369 - t371, t413), actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t367 * minus_rate_dot_2_leg1), t367 * t385,
+                -(t367 * t395), 0.0, -::overact::math::signed(t367, t402),
+                ::overact::math::signed(t365 - t367, t407), actuator_accelerations[1],
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -(t447 * minus_rate_dot_2_leg2),
-                t447 * t459 - (t248 * (5.0 * t53) + t253 * minus_rate_dot_2_leg2),
-                t438 + t447 * t471, 0.04 * actuator_accelerations[1],
-                ::overact::math::signed(t447 - 1.0, t477),
-                ::overact::math::signed(t369 - t447, t483), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t517 * rate_dot_2_leg3, t517 * t529, -(t517 * t541), 0.0,
-                ::overact::math::signed(t517, t547), ::overact::math::signed(t369 - t517, t553),
-                t369 * rate_dot_3_leg1, t369 * t571 - (t363 * t566 + t358 * t563),
-                t358 * t566 - t363 * t563 - t369 * t586, t363 * t339 - t358 * t335,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -(t441 * minus_rate_dot_2_leg2),
+                t441 * t452 - (t244 * t449 + t249 * minus_rate_dot_2_leg2), t432 + t441 * t463,
+                0.04 * actuator_accelerations[1], ::overact::math::signed(t441 - 1.0, t469),
+                ::overact::math::signed(t365 - t441, t475), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t509 * rate_dot_2_leg3, t509 * t520, -(t509 * t531), 0.0,
+                ::overact::math::signed(t509, t537), ::overact::math::signed(t365 - t509, t543),
+                t365 * rate_dot_3_leg1, t354 * t554 - t359 * t552 + t365 * t559,
+                t359 * t554 + t354 * t552 - t365 * t577, t359 * t335 - t354 * t331,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t380 * minus_rate_dot_2_leg1), t380 * t391,
-                -(t380 * t401), 0.0, -::overact::math::signed(t380, t408),
-                ::overact::math::signed(t373 - t380, t413), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t453 * minus_rate_dot_2_leg2), t453 * t459, t453 * t471, 0.0,
-                ::overact::math::signed(t453, t477), ::overact::math::signed(t373 - t453, t483),
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t376 * minus_rate_dot_2_leg1), t376 * t385,
+                -(t376 * t395), 0.0, -::overact::math::signed(t376, t402),
+                ::overact::math::signed(t369 - t376, t407), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t447 * minus_rate_dot_2_leg2), t447 * t452, t447 * t463, 0.0,
+                ::overact::math::signed(t447, t469), ::overact::math::signed(t369 - t447, t475),
                 actuator_accelerations[2], actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, t523 * rate_dot_2_leg3,
-                t308 * rate_dot_2_leg3 - t303 * (5.0 * t98) + t523 * t529, -(t508 + t523 * t541),
-                0.04 * actuator_accelerations[2], ::overact::math::signed(t523 - 1.0, t547),
-                ::overact::math::signed(t373 - t523, t553), t373 * rate_dot_3_leg1,
-                t377 * t563 - t375 * t566 + t373 * t571, -(t375 * t563 + t377 * t566 + t373 * t586),
-                t375 * t339 + t377 * t335,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, t515 * rate_dot_2_leg3,
+                t304 * rate_dot_2_leg3 - t299 * t517 + t515 * t520, -(t500 + t515 * t531),
+                0.04 * actuator_accelerations[2], ::overact::math::signed(t515 - 1.0, t537),
+                ::overact::math::signed(t369 - t515, t543), t369 * rate_dot_3_leg1,
+                t369 * t559 - (t371 * t552 + t373 * t554), t371 * t554 - t373 * t552 - t369 * t577,
+                t371 * t335 + t373 * t331,
             ],
         ])
     }
@@ -2695,7 +2699,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 336 operations (127 additions, 203 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 292 intermediates.
+    /// 321 operations (120 additions, 195 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 279 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2707,14 +2711,12 @@ impl Planar3Rrr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t3 = t2 * twist[2];
-        let t4 = twist[2] * t3;
         let t5 = 0.1 * s_phi;
-        let t6 = t5 * acceleration[2];
-        let t8 = 10.0 * (t4 + t6);
-        let t9 = t2 * acceleration[2];
-        let t10 = t5 * twist[2];
-        let t11 = twist[2] * t10;
-        let t13 = 10.0 * (t9 - t11);
+        let t7 = twist[2] * t3 + t5 * acceleration[2];
+        let t8 = 10.0 * t7;
+        let t9 = t5 * twist[2];
+        let t12 = twist[2] * t9 - t2 * acceleration[2];
+        let t13 = 10.0 * t12;
         let t20 = pose[0] - t5;
         let t23 = pose[1] + t2 - 0.35;
         let t26 = t23 * t23 + t20 * t20;
@@ -2729,160 +2731,161 @@ impl Planar3Rrr {
         let minus_g1_vx_leg1 = t32 * t34;
         let t38 = 0.5 * t23 - t20 * t29;
         let t39 = t23 - t38;
-        let t41 = acceleration[1] - t6 - t4;
-        let t44 = acceleration[0] - t9 + t11;
+        let t40 = acceleration[1] - t7;
+        let t42 = t12 + acceleration[0];
         let minus_g2_vx_leg1 = t31 * t34;
-        let t48 = twist[0] - t3;
+        let t46 = twist[0] - t3;
         let minus_g2_vy_leg1 = t38 * t34;
-        let t51 = twist[1] - t10;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t48 + minus_g2_vy_leg1 * t51;
-        let t54 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t56 = t39 * t41 - t32 * t44 + 0.04 * t54;
+        let t49 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t46 + minus_g2_vy_leg1 * t49;
+        let t52 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t54 = t39 * t40 - t32 * t42 + 0.04 * t52;
         let g1_vy_leg1 = t39 * t34;
-        let rate_1_leg1 = g1_vy_leg1 * t51 - minus_g1_vx_leg1 * t48;
-        let t61 = rate_1_leg1 * rate_1_leg1;
-        let t63 = 0.5 * (t26 - 0.08);
-        let rate_dot_1_leg1 = t34 * (t56 + t61 * t63);
+        let rate_1_leg1 = g1_vy_leg1 * t49 - minus_g1_vx_leg1 * t46;
+        let t59 = rate_1_leg1 * rate_1_leg1;
+        let t61 = 0.5 * (t26 - 0.08);
+        let rate_dot_1_leg1 = t34 * (t54 + t59 * t61);
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t5 * g1_vy_leg1;
-        let t75 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t74 = 0.1 * minus_c123_leg2;
+        let t75 = t5 - t74;
         let t77 = pose[0] + t75 + 0.3031088913245535;
-        let t81 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t83 = pose[1] - t81 + 0.175;
-        let t85 = 0.8660254037844386 * t77 + 0.5 * t83;
-        let t88 = 0.5 * t77 - 0.8660254037844386 * t83;
-        let t91 = t85 * t85 + t88 * t88;
-        let t93 = 0.04 / t91 - 0.25;
-        ::overact::guard::reach(t93, "leg2")?;
-        let t94 = ::overact::math::sqrt(t93);
-        let t97 = t88 * t94 - 0.5 * t85;
-        let t98 = t85 + t97;
-        let t102 = 0.5 * t88 + t85 * t94;
-        let t103 = t88 - t102;
-        let t105 = 4.330127018922193 * t98 + 2.5 * t103;
-        let t106 = t91 * t94;
+        let t78 = 0.5 * t77;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t82 = 0.1 * minus_s123_leg2;
+        let t83 = t2 + t82;
+        let t84 = pose[1] + 0.175;
+        let t85 = t84 - t83;
+        let t87 = t78 - 0.8660254037844386 * t85;
+        let t89 = 0.5 * t85;
+        let t90 = 0.8660254037844386 * t77 + t89;
+        let t93 = t90 * t90 + t87 * t87;
+        let t95 = 0.04 / t93 - 0.25;
+        ::overact::guard::reach(t95, "leg2")?;
+        let t96 = ::overact::math::sqrt(t95);
+        let t99 = t87 * t96 + 0.5 * t90;
+        let t103 = 0.5 * t87 - t90 * t96;
+        let t105 = 4.330127018922193 * t99 + 2.5 * t103;
+        let t106 = t93 * t96;
         ::overact::guard::leg(t106, 0.03903123748998999, "leg2")?;
         let t107 = 0.2 / t106;
         let g1_vx_leg2 = t105 * t107;
-        let t111 = 4.330127018922193 * t103 - 2.5 * t98;
-        let t114 = t81 * twist[2];
+        let t111 = 4.330127018922193 * t103 - 2.5 * t99;
+        let t114 = t83 * twist[2];
         let t116 = acceleration[1] + t75 * acceleration[2] + twist[2] * t114;
         let t120 = t75 * twist[2];
-        let t122 = acceleration[0] + t81 * acceleration[2] - twist[2] * t120;
-        let t127 = 4.330127018922193 * t102 + 2.5 * t97;
-        let g2_vy_leg2 = t127 * t107;
-        let t129 = twist[1] + t120;
-        let t133 = 2.5 * t102 - 4.330127018922193 * t97;
-        let minus_g2_vx_leg2 = t133 * t107;
-        let t135 = twist[0] + t114;
-        let rate_2_leg2 = g2_vy_leg2 * t129 - minus_g2_vx_leg2 * t135;
-        let t138 = rate_2_leg2 * rate_2_leg2;
-        let t140 = t111 * t116 - t105 * t122 - 0.2 * t138;
+        let t122 = acceleration[0] + t83 * acceleration[2] - twist[2] * t120;
+        let t126 = t111 + 10.0 * t89;
+        let minus_g2_vy_leg2 = t126 * t107;
+        let t128 = twist[1] + t120;
+        let t131 = 10.0 * t78 - t105;
+        let minus_g2_vx_leg2 = t131 * t107;
+        let t133 = twist[0] + t114;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * t128 + minus_g2_vx_leg2 * t133;
+        let t136 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t138 = t111 * t116 - t105 * t122 - 0.2 * t136;
         let minus_g1_vy_leg2 = t111 * t107;
-        let rate_1_leg2 = g1_vx_leg2 * t135 - minus_g1_vy_leg2 * t129;
-        let t145 = rate_1_leg2 * rate_1_leg2;
-        let t147 = 2.5 * (t91 - 0.08);
-        let minus_rate_dot_1_leg2 = t107 * (t140 - t145 * t147);
-        let g1_wz_leg2 = t81 * g1_vx_leg2 - t75 * minus_g1_vy_leg2;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t160 = 0.1 * minus_c123_leg2;
-        let t162 = pose[0] + t160 - 0.3031088913245535;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t167 = 0.1 * minus_s123_leg2;
-        let t169 = pose[1] + t167 + 0.175;
-        let t171 = 0.8660254037844386 * t162 - 0.5 * t169;
-        let t175 = 0.5 * t162 + 0.8660254037844386 * t169;
-        let t178 = t171 * t171 + t175 * t175;
-        let t180 = 0.04 / t178 - 0.25;
-        ::overact::guard::reach(t180, "leg3")?;
-        let t181 = ::overact::math::sqrt(t180);
-        let t183 = 0.5 * t171 + t175 * t181;
-        let t184 = t171 - t183;
-        let t188 = 0.5 * t175 - t171 * t181;
-        let t189 = t175 - t188;
-        let t191 = 4.330127018922193 * t184 + 2.5 * t189;
-        let t192 = t178 * t181;
-        ::overact::guard::leg(t192, 0.03903123748998999, "leg3")?;
-        let t193 = 0.2 / t192;
-        let g1_vx_leg3 = t191 * t193;
-        let t197 = t160 * twist[2];
-        let t199 = acceleration[0] - t167 * acceleration[2] - twist[2] * t197;
-        let t203 = 2.5 * t184 - 4.330127018922193 * t189;
-        let t206 = t167 * twist[2];
-        let t208 = acceleration[1] + t160 * acceleration[2] - twist[2] * t206;
-        let t213 = 2.5 * t183 - 4.330127018922193 * t188;
-        let g2_vy_leg3 = t213 * t193;
-        let t215 = twist[1] + t197;
-        let t219 = 4.330127018922193 * t183 + 2.5 * t188;
-        let minus_g2_vx_leg3 = t219 * t193;
-        let t221 = twist[0] - t206;
-        let rate_2_leg3 = g2_vy_leg3 * t215 - minus_g2_vx_leg3 * t221;
-        let t224 = rate_2_leg3 * rate_2_leg3;
-        let t226 = t191 * t199 - t203 * t208 + 0.2 * t224;
-        let minus_g1_vy_leg3 = t203 * t193;
-        let rate_1_leg3 = g1_vx_leg3 * t221 - minus_g1_vy_leg3 * t215;
-        let t231 = rate_1_leg3 * rate_1_leg3;
-        let t233 = 2.5 * (t178 - 0.08);
-        let rate_dot_1_leg3 = t193 * (t226 + t231 * t233);
-        let minus_g1_wz_leg3 = t160 * minus_g1_vy_leg3 + t167 * g1_vx_leg3;
-        let t265 = t31 * t44 + t38 * t41 + 0.04 * t61;
-        let minus_rate_dot_2_leg1 = t34 * (t265 + t54 * t63);
+        let rate_1_leg2 = g1_vx_leg2 * t133 - minus_g1_vy_leg2 * t128;
+        let t143 = rate_1_leg2 * rate_1_leg2;
+        let t145 = 2.5 * (t93 - 0.08);
+        let minus_rate_dot_1_leg2 = t107 * (t138 - t143 * t145);
+        let g1_wz_leg2 = t83 * g1_vx_leg2 - t75 * minus_g1_vy_leg2;
+        let t156 = pose[0] + t74 + -0.3031088913245535;
+        let t158 = t82 + t84;
+        let t159 = 0.5 * t158;
+        let t160 = 0.8660254037844386 * t156 - t159;
+        let t162 = 0.5 * t156;
+        let t164 = t162 + 0.8660254037844386 * t158;
+        let t167 = t160 * t160 + t164 * t164;
+        let t169 = 0.04 / t167 - 0.25;
+        ::overact::guard::reach(t169, "leg3")?;
+        let t170 = ::overact::math::sqrt(t169);
+        let t172 = 0.5 * t160 - t164 * t170;
+        let t176 = 0.5 * t164 + t160 * t170;
+        let t178 = 4.330127018922193 * t172 + 2.5 * t176;
+        let t179 = t167 * t170;
+        ::overact::guard::leg(t179, 0.03903123748998999, "leg3")?;
+        let t180 = 0.2 / t179;
+        let g1_vx_leg3 = t178 * t180;
+        let t184 = t74 * twist[2];
+        let t186 = acceleration[0] - t82 * acceleration[2] - twist[2] * t184;
+        let t190 = 2.5 * t172 - 4.330127018922193 * t176;
+        let t193 = t82 * twist[2];
+        let t195 = acceleration[1] + t74 * acceleration[2] - twist[2] * t193;
+        let t199 = t190 + 10.0 * t159;
+        let minus_g2_vy_leg3 = t199 * t180;
+        let t201 = twist[1] + t184;
+        let t204 = 10.0 * t162 - t178;
+        let minus_g2_vx_leg3 = t204 * t180;
+        let t206 = twist[0] - t193;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t201 + minus_g2_vx_leg3 * t206;
+        let t209 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t211 = t178 * t186 - t190 * t195 + 0.2 * t209;
+        let minus_g1_vy_leg3 = t190 * t180;
+        let rate_1_leg3 = g1_vx_leg3 * t206 - minus_g1_vy_leg3 * t201;
+        let t216 = rate_1_leg3 * rate_1_leg3;
+        let t218 = 2.5 * (t167 - 0.08);
+        let rate_dot_1_leg3 = t180 * (t211 + t216 * t218);
+        let minus_g1_wz_leg3 = t74 * minus_g1_vy_leg3 + t82 * g1_vx_leg3;
+        let t250 = t31 * t42 + t38 * t40 + 0.04 * t59;
+        let minus_rate_dot_2_leg1 = t34 * (t250 + t52 * t61);
         let g2_wz_leg1 = t5 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t279 = t133 * t122 - t127 * t116 + 0.2 * t145;
-        let minus_rate_dot_2_leg2 = t107 * (t279 + t138 * t147);
-        let g2_wz_leg2 = t75 * g2_vy_leg2 - t81 * minus_g2_vx_leg2;
-        let t293 = t213 * t208 - t219 * t199 - 0.2 * t231;
-        let rate_dot_2_leg3 = t193 * (t293 - t224 * t233);
-        let g2_wz_leg3 = t160 * g2_vy_leg3 + t167 * minus_g2_vx_leg3;
-        let t303 = 5.0 * t56;
-        let t305 = 5.0 * t265;
-        let t333 = rate_1_leg1 + minus_rate_2_leg1;
-        let t340 = rate_2_leg2 - rate_1_leg2;
-        let t347 = rate_2_leg3 - rate_1_leg3;
-        let t353 = minus_rate_2_leg1 + twist[2];
-        let t358 = twist[2] - rate_2_leg2;
-        let t363 = twist[2] - rate_2_leg3;
+        let t264 = t131 * t122 + t126 * t116 + 0.2 * t143;
+        let minus_rate_dot_2_leg2 = t107 * (t264 + t136 * t145);
+        let minus_g2_wz_leg2 = t75 * minus_g2_vy_leg2 + t83 * minus_g2_vx_leg2;
+        let t278 = t199 * t195 + t204 * t186 + 0.2 * t216;
+        let minus_rate_dot_2_leg3 = t180 * (t278 + t209 * t218);
+        let g2_wz_leg3 = t82 * minus_g2_vx_leg3 - t74 * minus_g2_vy_leg3;
+        let t288 = 5.0 * t54;
+        let t290 = 5.0 * t250;
+        let t318 = rate_1_leg1 + minus_rate_2_leg1;
+        let t326 = -(minus_rate_2_leg2 + rate_1_leg2);
+        let t334 = -(minus_rate_2_leg3 + rate_1_leg3);
+        let t340 = minus_rate_2_leg1 + twist[2];
+        let t345 = twist[2] + minus_rate_2_leg2;
+        let t350 = twist[2] + minus_rate_2_leg3;
         Ok([
             [
-                0.0, -t8, -t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
+                0.0, -t8, t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
                 -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
                 g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                minus_g2_vx_leg1 * t303 - minus_g1_vx_leg1 * t305,
-                g1_vx_leg2 * t279 - minus_g2_vx_leg2 * t140,
-                minus_g2_vx_leg3 * t226 - g1_vx_leg3 * t293,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t333),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t340),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t347),
-                ::overact::math::signed(minus_g2_vx_leg1, t353),
-                ::overact::math::signed(minus_g2_vx_leg2, t358),
-                ::overact::math::signed(minus_g2_vx_leg3, t363),
+                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                minus_g2_vx_leg1 * t288 - minus_g1_vx_leg1 * t290,
+                g1_vx_leg2 * t264 - minus_g2_vx_leg2 * t138,
+                minus_g2_vx_leg3 * t211 + g1_vx_leg3 * t278,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t318),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t326),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t334),
+                ::overact::math::signed(minus_g2_vx_leg1, t340),
+                ::overact::math::signed(minus_g2_vx_leg2, t345),
+                ::overact::math::signed(minus_g2_vx_leg3, t350),
             ],
             [
-                0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
                 g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
                 -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t305 + minus_g2_vy_leg1 * t303,
-                g2_vy_leg2 * t140 - minus_g1_vy_leg2 * t279,
-                minus_g1_vy_leg3 * t293 - g2_vy_leg3 * t226,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t333),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t340),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t347),
-                ::overact::math::signed(minus_g2_vy_leg1, t353),
-                -::overact::math::signed(g2_vy_leg2, t358),
-                -::overact::math::signed(g2_vy_leg3, t363),
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                g1_vy_leg1 * t290 + minus_g2_vy_leg1 * t288,
+                -(minus_g2_vy_leg2 * t138 + minus_g1_vy_leg2 * t264),
+                minus_g2_vy_leg3 * t211 - minus_g1_vy_leg3 * t278,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t318),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t326),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t334),
+                ::overact::math::signed(minus_g2_vy_leg1, t340),
+                ::overact::math::signed(minus_g2_vy_leg2, t345),
+                ::overact::math::signed(minus_g2_vy_leg3, t350),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1, -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 -(minus_g1_wz_leg3 * rate_dot_1_leg3), g1_wz_leg1 * rate_1_leg1,
                 g1_wz_leg2 * rate_1_leg2, -(minus_g1_wz_leg3 * rate_1_leg3),
@@ -2890,15 +2893,15 @@ impl Planar3Rrr {
                 ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), g1_wz_leg1, g1_wz_leg2,
                 -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                g1_wz_leg1 * t305 - g2_wz_leg1 * t303, g1_wz_leg2 * t279 + g2_wz_leg2 * t140,
-                minus_g1_wz_leg3 * t293 - g2_wz_leg3 * t226,
-                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t333),
-                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t340),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t347),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t353),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t358),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t363),
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
+                g1_wz_leg1 * t290 - g2_wz_leg1 * t288, g1_wz_leg2 * t264 - minus_g2_wz_leg2 * t138,
+                -(minus_g1_wz_leg3 * t278 + g2_wz_leg3 * t211),
+                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t318),
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t326),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t334),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t340),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t345),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t350),
             ],
         ])
     }
@@ -2913,7 +2916,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 278 operations (97 additions, 178 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 243 intermediates.
+    /// 276 operations (95 additions, 178 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 241 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2932,127 +2935,125 @@ impl Planar3Rrr {
         ::overact::guard::leg(s2_leg3, 0.9757809372497493, "leg3")?;
         let t2 = 0.1 * c_phi;
         let t3 = t2 * twist[2];
-        let t4 = twist[2] * t3;
         let t5 = 0.1 * s_phi;
-        let t6 = t5 * acceleration[2];
-        let t8 = 10.0 * (t4 + t6);
-        let t9 = t2 * acceleration[2];
-        let t10 = t5 * twist[2];
-        let t11 = twist[2] * t10;
-        let t13 = 10.0 * (t9 - t11);
+        let t7 = twist[2] * t3 + t5 * acceleration[2];
+        let t8 = 10.0 * t7;
+        let t9 = t5 * twist[2];
+        let t12 = twist[2] * t9 - t2 * acceleration[2];
+        let t13 = 10.0 * t12;
         let c12_leg1 = c1_leg1 * c2_leg1 - s1_leg1 * s2_leg1;
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t30 = 5.0 / s2_leg1;
         let minus_g1_vx_leg1 = s12_leg1 * t30;
-        let t33 = acceleration[1] - t6 - t4;
-        let t36 = acceleration[0] - t9 + t11;
+        let t32 = acceleration[1] - t7;
+        let t34 = t12 + acceleration[0];
         let g2_vx_leg1 = s1_leg1 * t30;
-        let t40 = twist[0] - t3;
+        let t38 = twist[0] - t3;
         let minus_g2_vy_leg1 = c1_leg1 * t30;
-        let t43 = twist[1] - t10;
-        let rate_2_leg1 = g2_vx_leg1 * t40 - minus_g2_vy_leg1 * t43;
-        let t46 = rate_2_leg1 * rate_2_leg1;
-        let t48 = c12_leg1 * t33 - s12_leg1 * t36 + 0.2 * t46;
+        let t41 = twist[1] - t9;
+        let rate_2_leg1 = g2_vx_leg1 * t38 - minus_g2_vy_leg1 * t41;
+        let t44 = rate_2_leg1 * rate_2_leg1;
+        let t46 = c12_leg1 * t32 - s12_leg1 * t34 + 0.2 * t44;
         let g1_vy_leg1 = c12_leg1 * t30;
-        let rate_1_leg1 = g1_vy_leg1 * t43 - minus_g1_vx_leg1 * t40;
-        let t53 = rate_1_leg1 * rate_1_leg1;
-        let t54 = 0.2 * c2_leg1;
-        let rate_dot_1_leg1 = t30 * (t48 + t53 * t54);
+        let rate_1_leg1 = g1_vy_leg1 * t41 - minus_g1_vx_leg1 * t38;
+        let t51 = rate_1_leg1 * rate_1_leg1;
+        let t52 = 0.2 * c2_leg1;
+        let rate_dot_1_leg1 = t30 * (t46 + t51 * t52);
         let g1_wz_leg1 = minus_g1_vx_leg1 * t2 - g1_vy_leg1 * t5;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t76 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t77 = 5.0 / s2_leg2;
-        let g1_vx_leg2 = t76 * t77;
-        let t81 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t82 = 0.05 * s_phi;
-        let t83 = 0.08660254037844387 * c_phi;
-        let t84 = t82 - t83;
-        let t87 = 0.08660254037844387 * s_phi;
-        let t88 = 0.05 * c_phi;
-        let t89 = t87 + t88;
-        let t90 = t89 * twist[2];
-        let t92 = acceleration[1] + t84 * acceleration[2] + twist[2] * t90;
-        let t96 = t84 * twist[2];
-        let t98 = acceleration[0] + t89 * acceleration[2] - twist[2] * t96;
-        let t103 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t103 * t77;
-        let t105 = twist[1] + t96;
-        let t109 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t109 * t77;
-        let t111 = twist[0] + t90;
-        let rate_2_leg2 = g2_vy_leg2 * t105 - minus_g2_vx_leg2 * t111;
-        let t114 = rate_2_leg2 * rate_2_leg2;
-        let t116 = t81 * t92 - t76 * t98 - 0.2 * t114;
-        let minus_g1_vy_leg2 = t81 * t77;
-        let rate_1_leg2 = g1_vx_leg2 * t111 - minus_g1_vy_leg2 * t105;
-        let t121 = rate_1_leg2 * rate_1_leg2;
-        let t122 = 0.2 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t77 * (t116 - t121 * t122);
-        let g1_wz_leg2 = g1_vx_leg2 * t89 - minus_g1_vy_leg2 * t84;
+        let t74 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let t75 = 5.0 / s2_leg2;
+        let g1_vx_leg2 = t74 * t75;
+        let t79 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let t80 = 0.05 * s_phi;
+        let t81 = 0.08660254037844387 * c_phi;
+        let t82 = t80 - t81;
+        let t85 = 0.08660254037844387 * s_phi;
+        let t86 = 0.05 * c_phi;
+        let t87 = t85 + t86;
+        let t88 = t87 * twist[2];
+        let t90 = acceleration[1] + t82 * acceleration[2] + twist[2] * t88;
+        let t94 = t82 * twist[2];
+        let t96 = acceleration[0] + t87 * acceleration[2] - twist[2] * t94;
+        let t101 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = t101 * t75;
+        let t103 = twist[1] + t94;
+        let t107 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = t107 * t75;
+        let t109 = twist[0] + t88;
+        let rate_2_leg2 = g2_vy_leg2 * t103 - minus_g2_vx_leg2 * t109;
+        let t112 = rate_2_leg2 * rate_2_leg2;
+        let t114 = t79 * t90 - t74 * t96 - 0.2 * t112;
+        let minus_g1_vy_leg2 = t79 * t75;
+        let rate_1_leg2 = g1_vx_leg2 * t109 - minus_g1_vy_leg2 * t103;
+        let t119 = rate_1_leg2 * rate_1_leg2;
+        let t120 = 0.2 * c2_leg2;
+        let minus_rate_dot_1_leg2 = t75 * (t114 - t119 * t120);
+        let g1_wz_leg2 = g1_vx_leg2 * t87 - minus_g1_vy_leg2 * t82;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t144 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let t145 = 5.0 / s2_leg3;
-        let g1_vx_leg3 = t144 * t145;
-        let t147 = t87 - t88;
-        let t150 = t83 + t82;
-        let t151 = t150 * twist[2];
-        let t153 = acceleration[0] - t147 * acceleration[2] - twist[2] * t151;
-        let t157 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t160 = t147 * twist[2];
-        let t162 = acceleration[1] + t150 * acceleration[2] - twist[2] * t160;
-        let t167 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t167 * t145;
-        let t169 = twist[1] + t151;
-        let t173 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t173 * t145;
-        let t175 = twist[0] - t160;
-        let rate_2_leg3 = g2_vy_leg3 * t169 - minus_g2_vx_leg3 * t175;
-        let t178 = rate_2_leg3 * rate_2_leg3;
-        let t180 = t144 * t153 - t157 * t162 + 0.2 * t178;
-        let minus_g1_vy_leg3 = t157 * t145;
-        let rate_1_leg3 = g1_vx_leg3 * t175 - minus_g1_vy_leg3 * t169;
-        let t185 = rate_1_leg3 * rate_1_leg3;
-        let t186 = 0.2 * c2_leg3;
-        let rate_dot_1_leg3 = t145 * (t180 + t185 * t186);
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t150 + g1_vx_leg3 * t147;
-        let t218 = s1_leg1 * t36 - c1_leg1 * t33 - 0.2 * t53;
-        let rate_dot_2_leg1 = t30 * (t218 - t46 * t54);
+        let t142 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let t143 = 5.0 / s2_leg3;
+        let g1_vx_leg3 = t142 * t143;
+        let t145 = t85 - t86;
+        let t148 = t81 + t80;
+        let t149 = t148 * twist[2];
+        let t151 = acceleration[0] - t145 * acceleration[2] - twist[2] * t149;
+        let t155 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let t158 = t145 * twist[2];
+        let t160 = acceleration[1] + t148 * acceleration[2] - twist[2] * t158;
+        let t165 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t165 * t143;
+        let t167 = twist[1] + t149;
+        let t171 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = t171 * t143;
+        let t173 = twist[0] - t158;
+        let rate_2_leg3 = g2_vy_leg3 * t167 - minus_g2_vx_leg3 * t173;
+        let t176 = rate_2_leg3 * rate_2_leg3;
+        let t178 = t142 * t151 - t155 * t160 + 0.2 * t176;
+        let minus_g1_vy_leg3 = t155 * t143;
+        let rate_1_leg3 = g1_vx_leg3 * t173 - minus_g1_vy_leg3 * t167;
+        let t183 = rate_1_leg3 * rate_1_leg3;
+        let t184 = 0.2 * c2_leg3;
+        let rate_dot_1_leg3 = t143 * (t178 + t183 * t184);
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t148 + g1_vx_leg3 * t145;
+        let t216 = s1_leg1 * t34 - c1_leg1 * t32 - 0.2 * t51;
+        let rate_dot_2_leg1 = t30 * (t216 - t44 * t52);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t5 - g2_vx_leg1 * t2;
-        let t232 = t109 * t98 - t103 * t92 + 0.2 * t121;
-        let minus_rate_dot_2_leg2 = t77 * (t232 + t114 * t122);
-        let g2_wz_leg2 = g2_vy_leg2 * t84 - minus_g2_vx_leg2 * t89;
-        let t246 = t167 * t162 - t173 * t153 - 0.2 * t185;
-        let rate_dot_2_leg3 = t145 * (t246 - t178 * t186);
-        let g2_wz_leg3 = g2_vy_leg3 * t150 + minus_g2_vx_leg3 * t147;
-        let t284 = rate_2_leg1 - rate_1_leg1;
-        let t291 = rate_2_leg2 - rate_1_leg2;
-        let t298 = rate_2_leg3 - rate_1_leg3;
-        let t304 = twist[2] - rate_2_leg1;
-        let t309 = twist[2] - rate_2_leg2;
-        let t314 = twist[2] - rate_2_leg3;
+        let t230 = t107 * t96 - t101 * t90 + 0.2 * t119;
+        let minus_rate_dot_2_leg2 = t75 * (t230 + t112 * t120);
+        let g2_wz_leg2 = g2_vy_leg2 * t82 - minus_g2_vx_leg2 * t87;
+        let t244 = t165 * t160 - t171 * t151 - 0.2 * t183;
+        let rate_dot_2_leg3 = t143 * (t244 - t176 * t184);
+        let g2_wz_leg3 = g2_vy_leg3 * t148 + minus_g2_vx_leg3 * t145;
+        let t282 = rate_2_leg1 - rate_1_leg1;
+        let t289 = rate_2_leg2 - rate_1_leg2;
+        let t296 = rate_2_leg3 - rate_1_leg3;
+        let t302 = twist[2] - rate_2_leg1;
+        let t307 = twist[2] - rate_2_leg2;
+        let t312 = twist[2] - rate_2_leg3;
         Ok([
             [
-                0.0, -t8, -t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
+                0.0, -t8, t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
                 -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
                 g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, g2_vx_leg1 * rate_dot_2_leg1, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), minus_g1_vx_leg1 * t218 - g2_vx_leg1 * t48,
-                g1_vx_leg2 * t232 - minus_g2_vx_leg2 * t116,
-                minus_g2_vx_leg3 * t180 - g1_vx_leg3 * t246,
-                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t284),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t291),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t298),
-                -::overact::math::signed(g2_vx_leg1, t304),
-                ::overact::math::signed(minus_g2_vx_leg2, t309),
-                ::overact::math::signed(minus_g2_vx_leg3, t314),
+                -(minus_g2_vx_leg3 * rate_dot_2_leg3), minus_g1_vx_leg1 * t216 - g2_vx_leg1 * t46,
+                g1_vx_leg2 * t230 - minus_g2_vx_leg2 * t114,
+                minus_g2_vx_leg3 * t178 - g1_vx_leg3 * t244,
+                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t282),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t289),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t296),
+                -::overact::math::signed(g2_vx_leg1, t302),
+                ::overact::math::signed(minus_g2_vx_leg2, t307),
+                ::overact::math::signed(minus_g2_vx_leg3, t312),
             ],
             [
-                0.0, t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3),
                 g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
                 -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
@@ -3060,19 +3061,19 @@ impl Planar3Rrr {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, -(minus_g2_vy_leg1 * rate_dot_2_leg1),
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                minus_g2_vy_leg1 * t48 - g1_vy_leg1 * t218,
-                g2_vy_leg2 * t116 - minus_g1_vy_leg2 * t232,
-                minus_g1_vy_leg3 * t246 - g2_vy_leg3 * t180,
-                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t284),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t291),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t298),
-                ::overact::math::signed(minus_g2_vy_leg1, t304),
-                -::overact::math::signed(g2_vy_leg2, t309),
-                -::overact::math::signed(g2_vy_leg3, t314),
+                minus_g2_vy_leg1 * t46 - g1_vy_leg1 * t216,
+                g2_vy_leg2 * t114 - minus_g1_vy_leg2 * t230,
+                minus_g1_vy_leg3 * t244 - g2_vy_leg3 * t178,
+                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t282),
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t289),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t296),
+                ::overact::math::signed(minus_g2_vy_leg1, t302),
+                -::overact::math::signed(g2_vy_leg2, t307),
+                -::overact::math::signed(g2_vy_leg3, t312),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1, -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 -(minus_g1_wz_leg3 * rate_dot_1_leg3), g1_wz_leg1 * rate_1_leg1,
                 g1_wz_leg2 * rate_1_leg2, -(minus_g1_wz_leg3 * rate_1_leg3),
@@ -3081,14 +3082,14 @@ impl Planar3Rrr {
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), g1_wz_leg1, g1_wz_leg2,
                 -minus_g1_wz_leg3, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                -(g1_wz_leg1 * t218 + g2_wz_leg1 * t48), g1_wz_leg2 * t232 + g2_wz_leg2 * t116,
-                minus_g1_wz_leg3 * t246 - g2_wz_leg3 * t180,
-                ::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t284),
-                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t291),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t298),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t304),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t309),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t314),
+                -(g1_wz_leg1 * t216 + g2_wz_leg1 * t46), g1_wz_leg2 * t230 + g2_wz_leg2 * t114,
+                minus_g1_wz_leg3 * t244 - g2_wz_leg3 * t178,
+                ::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t282),
+                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t289),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t296),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t302),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t307),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t312),
             ],
         ])
     }
@@ -3103,7 +3104,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 437 operations (173 additions, 255 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 390 intermediates.
+    /// 420 operations (165 additions, 246 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 375 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3133,227 +3134,228 @@ impl Planar3Rrr {
         let t24 = t7 - t23;
         let g1_vy_leg1 = t24 * t18;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t3 * g1_vy_leg1;
-        let t31 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t34 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t36 = pose[0] + t34 + 0.3031088913245535;
-        let t39 = pose[1] - t31 + 0.175;
-        let t41 = 0.8660254037844386 * t36 + 0.5 * t39;
-        let t44 = 0.5 * t36 - 0.8660254037844386 * t39;
-        let t47 = t41 * t41 + t44 * t44;
-        let t49 = 0.04 / t47 - 0.25;
-        ::overact::guard::reach(t49, "leg2")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let t53 = t44 * t50 - 0.5 * t41;
-        let t54 = t41 + t53;
-        let t58 = 0.5 * t44 + t41 * t50;
-        let t59 = t44 - t58;
-        let t61 = 4.330127018922193 * t54 + 2.5 * t59;
-        let t62 = t47 * t50;
-        ::overact::guard::leg(t62, 0.03903123748998999, "leg2")?;
-        let t63 = 0.2 / t62;
-        let g1_vx_leg2 = t61 * t63;
-        let t68 = 4.330127018922193 * t59 - 2.5 * t54;
-        let minus_g1_vy_leg2 = t68 * t63;
-        let g1_wz_leg2 = t31 * g1_vx_leg2 - t34 * minus_g1_vy_leg2;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t77 = 0.1 * minus_c123_leg2;
-        let t79 = pose[0] + t77 - 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t84 = 0.1 * minus_s123_leg2;
-        let t86 = pose[1] + t84 + 0.175;
-        let t88 = 0.8660254037844386 * t79 - 0.5 * t86;
-        let t92 = 0.5 * t79 + 0.8660254037844386 * t86;
-        let t95 = t88 * t88 + t92 * t92;
-        let t97 = 0.04 / t95 - 0.25;
-        ::overact::guard::reach(t97, "leg3")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let t100 = 0.5 * t88 + t92 * t98;
-        let t101 = t88 - t100;
-        let t105 = 0.5 * t92 - t88 * t98;
-        let t106 = t92 - t105;
-        let t108 = 2.5 * t101 - 4.330127018922193 * t106;
-        let t109 = t95 * t98;
-        ::overact::guard::leg(t109, 0.03903123748998999, "leg3")?;
-        let t110 = 0.2 / t109;
-        let minus_g1_vy_leg3 = t108 * t110;
-        let t115 = 4.330127018922193 * t101 + 2.5 * t106;
-        let g1_vx_leg3 = t115 * t110;
-        let minus_g1_wz_leg3 = t77 * minus_g1_vy_leg3 + t84 * g1_vx_leg3;
-        let t125 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t32 = 0.1 * minus_s123_leg2;
+        let t33 = t2 + t32;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t37 = 0.1 * minus_c123_leg2;
+        let t38 = t3 - t37;
+        let t40 = pose[0] + t38 + 0.3031088913245535;
+        let t41 = 0.5 * t40;
+        let t42 = pose[1] + 0.175;
+        let t43 = t42 - t33;
+        let t45 = t41 - 0.8660254037844386 * t43;
+        let t47 = 0.5 * t43;
+        let t48 = 0.8660254037844386 * t40 + t47;
+        let t51 = t48 * t48 + t45 * t45;
+        let t53 = 0.04 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t57 = t45 * t54 + 0.5 * t48;
+        let t61 = 0.5 * t45 - t48 * t54;
+        let t63 = 4.330127018922193 * t57 + 2.5 * t61;
+        let t64 = t51 * t54;
+        ::overact::guard::leg(t64, 0.03903123748998999, "leg2")?;
+        let t65 = 0.2 / t64;
+        let g1_vx_leg2 = t63 * t65;
+        let t70 = 4.330127018922193 * t61 - 2.5 * t57;
+        let minus_g1_vy_leg2 = t70 * t65;
+        let g1_wz_leg2 = t33 * g1_vx_leg2 - t38 * minus_g1_vy_leg2;
+        let t77 = pose[0] + t37 + -0.3031088913245535;
+        let t79 = t32 + t42;
+        let t80 = 0.5 * t79;
+        let t81 = 0.8660254037844386 * t77 - t80;
+        let t83 = 0.5 * t77;
+        let t85 = t83 + 0.8660254037844386 * t79;
+        let t88 = t81 * t81 + t85 * t85;
+        let t90 = 0.04 / t88 - 0.25;
+        ::overact::guard::reach(t90, "leg3")?;
+        let t91 = ::overact::math::sqrt(t90);
+        let t93 = 0.5 * t81 - t85 * t91;
+        let t97 = 0.5 * t85 + t81 * t91;
+        let t99 = 2.5 * t93 - 4.330127018922193 * t97;
+        let t100 = t88 * t91;
+        ::overact::guard::leg(t100, 0.03903123748998999, "leg3")?;
+        let t101 = 0.2 / t100;
+        let minus_g1_vy_leg3 = t99 * t101;
+        let t106 = 4.330127018922193 * t93 + 2.5 * t97;
+        let g1_vx_leg3 = t106 * t101;
+        let minus_g1_wz_leg3 = t37 * minus_g1_vy_leg3 + t32 * g1_vx_leg3;
+        let t116 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t130 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t121 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t130, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t130, 39.38461538461539, "actuators")?;
-        let t131 = 1.0 / t130;
-        let t132 = t125 * t131;
-        let t144 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
+        let t122 = 1.0 / t121;
+        let t123 = t116 * t122;
+        let t135 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t144 * t132;
-        let t152 = t144 * t131;
-        let t154 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t144 * t152;
-        ::overact::guard::platform(t154, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t154, 39.384615384615394, "actuators")?;
-        let t155 = 1.0 / t154;
-        let t156 = t146 * t155;
-        let t158 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t125 * t132 - t146 * t156;
-        ::overact::guard::platform(t158, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t158, 0.4800000000000003, "actuators")?;
-        let t159 = 1.0 / t158;
+        let t137 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t135 * t123;
+        let t143 = t135 * t122;
+        let t145 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t135 * t143;
+        ::overact::guard::platform(t145, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t145, 39.384615384615394, "actuators")?;
+        let t146 = 1.0 / t145;
+        let t147 = t137 * t146;
+        let t149 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t116 * t123 - t137 * t147;
+        ::overact::guard::platform(t149, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t149, 0.4800000000000003, "actuators")?;
+        let t150 = 1.0 / t149;
         let minus_g2_vx_leg1 = t15 * t18;
-        let t161 = g1_vx_leg2 * actuator_velocities[1];
-        let t162 = minus_g1_vx_leg1 * actuator_velocities[0];
-        let t164 = g1_vx_leg3 * actuator_velocities[2];
-        let t165 = t161 - t162 + t164;
-        let t167 = g1_vy_leg1 * actuator_velocities[0];
-        let t168 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t170 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t173 = t167 - t168 - t170 + t165 * t152;
-        let t175 = g1_wz_leg1 * actuator_velocities[0];
-        let t176 = g1_wz_leg2 * actuator_velocities[1];
-        let t178 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let rate_3_leg1 = t159 * (t175 + t176 - t178 - t165 * t132 - t156 * t173);
-        let t186 = t155 * t173 - t156 * rate_3_leg1;
-        let t190 = t165 * t131 + t152 * t186 - t132 * rate_3_leg1;
-        let t191 = t2 * rate_3_leg1;
+        let t152 = g1_vx_leg2 * actuator_velocities[1];
+        let t153 = minus_g1_vx_leg1 * actuator_velocities[0];
+        let t155 = g1_vx_leg3 * actuator_velocities[2];
+        let t156 = t152 - t153 + t155;
+        let t158 = g1_vy_leg1 * actuator_velocities[0];
+        let t159 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t161 = minus_g1_vy_leg3 * actuator_velocities[2];
+        let t164 = t158 - t159 - t161 + t156 * t143;
+        let t166 = g1_wz_leg1 * actuator_velocities[0];
+        let t167 = g1_wz_leg2 * actuator_velocities[1];
+        let t169 = minus_g1_wz_leg3 * actuator_velocities[2];
+        let rate_3_leg1 = t150 * (t166 + t167 - t169 - t156 * t123 - t147 * t164);
+        let t177 = t146 * t164 - t147 * rate_3_leg1;
+        let t181 = t156 * t122 + t143 * t177 - t123 * rate_3_leg1;
+        let t182 = t2 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
-        let t195 = t3 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t190 - t191)
-            + minus_g2_vy_leg1 * (t186 - t195);
-        let t199 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t200 = 0.04 * t199;
-        let t201 = rate_3_leg1 * t195;
-        let t203 = rate_3_leg1 * t191;
-        let t207 = actuator_velocities[0] * actuator_velocities[0];
-        let t209 = 0.5 * (t10 - 0.08);
-        let rate_dot_1_leg1 = t18 * (t200 - (t16 * t201 + t24 * t203) + t207 * t209);
-        let t213 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t215 = t34 * rate_3_leg1;
-        let t216 = rate_3_leg1 * t215;
-        let t218 = t31 * rate_3_leg1;
-        let t219 = rate_3_leg1 * t218;
-        let t224 = 4.330127018922193 * t58 + 2.5 * t53;
-        let g2_vy_leg2 = t224 * t63;
-        let t230 = 2.5 * t58 - 4.330127018922193 * t53;
-        let minus_g2_vx_leg2 = t230 * t63;
-        let rate_2_leg2 = g2_vy_leg2 * (t186 + t215) - minus_g2_vx_leg2 * (t190 + t218);
-        let t235 = rate_2_leg2 * rate_2_leg2;
-        let t236 = 0.2 * t235;
-        let t238 = actuator_velocities[1] * actuator_velocities[1];
-        let t240 = 2.5 * (t47 - 0.08);
-        let minus_rate_dot_1_leg2 = t63 * (t61 * t216 + t68 * t219 - t236 - t238 * t240);
-        let t244 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t247 = t84 * rate_3_leg1;
-        let t248 = rate_3_leg1 * t247;
-        let t250 = t77 * rate_3_leg1;
-        let t251 = rate_3_leg1 * t250;
-        let t256 = 2.5 * t100 - 4.330127018922193 * t105;
-        let g2_vy_leg3 = t256 * t110;
-        let t262 = 4.330127018922193 * t100 + 2.5 * t105;
-        let minus_g2_vx_leg3 = t262 * t110;
-        let rate_2_leg3 = g2_vy_leg3 * (t186 + t250) - minus_g2_vx_leg3 * (t190 - t247);
-        let t267 = rate_2_leg3 * rate_2_leg3;
-        let t268 = 0.2 * t267;
-        let t270 = actuator_velocities[2] * actuator_velocities[2];
-        let t272 = 2.5 * (t95 - 0.08);
-        let rate_dot_1_leg3 = t110 * (t108 * t248 - t115 * t251 + t268 + t270 * t272);
-        let t276 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t283 = g1_vx_leg2 * t244 - minus_g1_vx_leg1 * t213 + g1_vx_leg3 * t276;
-        let t292 = g1_vy_leg1 * t213 - minus_g1_vy_leg2 * t244 - minus_g1_vy_leg3 * t276
-            + t152 * t283;
-        let rate_dot_3_leg1 = t159
-            * (g1_wz_leg1 * t213 + g1_wz_leg2 * t244 - minus_g1_wz_leg3 * t276
-                - t132 * t283 - t156 * t292);
-        let t296 = t3 * rate_dot_3_leg1;
-        let t298 = 10.0 * (t203 + t296);
-        let t299 = t2 * rate_dot_3_leg1;
-        let t301 = 10.0 * (t299 - t201);
-        let t304 = t155 * t292 - t156 * rate_dot_3_leg1;
-        let t310 = t131 * t283 + t152 * t304 - t132 * rate_dot_3_leg1;
-        let t335 = t310 - t299 + t201;
-        let t338 = t304 - t296 - t203;
-        let t342 = t15 * t335 + t23 * t338 + 0.04 * t207;
-        let minus_rate_dot_2_leg1 = t18 * (t342 + t199 * t209);
+        let t186 = t3 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t181 - t182)
+            + minus_g2_vy_leg1 * (t177 - t186);
+        let t190 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t192 = rate_3_leg1 * t186;
+        let t194 = rate_3_leg1 * t182;
+        let t197 = 0.04 * t190 - (t16 * t192 + t24 * t194);
+        let t198 = actuator_velocities[0] * actuator_velocities[0];
+        let t200 = 0.5 * (t10 - 0.08);
+        let rate_dot_1_leg1 = t18 * (t197 + t198 * t200);
+        let t204 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t206 = t38 * rate_3_leg1;
+        let t207 = rate_3_leg1 * t206;
+        let t209 = t33 * rate_3_leg1;
+        let t210 = rate_3_leg1 * t209;
+        let t214 = t70 + 10.0 * t47;
+        let minus_g2_vy_leg2 = t214 * t65;
+        let t219 = 10.0 * t41 - t63;
+        let minus_g2_vx_leg2 = t219 * t65;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t177 + t206)
+            + minus_g2_vx_leg2 * (t181 + t209);
+        let t224 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t225 = 0.2 * t224;
+        let t227 = actuator_velocities[1] * actuator_velocities[1];
+        let t229 = 2.5 * (t51 - 0.08);
+        let minus_rate_dot_1_leg2 = t65 * (t63 * t207 + t70 * t210 - t225 - t227 * t229);
+        let t233 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t236 = t32 * rate_3_leg1;
+        let t237 = rate_3_leg1 * t236;
+        let t239 = t37 * rate_3_leg1;
+        let t240 = rate_3_leg1 * t239;
+        let t244 = t99 + 10.0 * t80;
+        let minus_g2_vy_leg3 = t244 * t101;
+        let t249 = 10.0 * t83 - t106;
+        let minus_g2_vx_leg3 = t249 * t101;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t177 + t239)
+            + minus_g2_vx_leg3 * (t181 - t236);
+        let t254 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t255 = 0.2 * t254;
+        let t257 = actuator_velocities[2] * actuator_velocities[2];
+        let t259 = 2.5 * (t88 - 0.08);
+        let rate_dot_1_leg3 = t101 * (t99 * t237 - t106 * t240 + t255 + t257 * t259);
+        let t263 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t270 = g1_vx_leg2 * t233 - minus_g1_vx_leg1 * t204 + g1_vx_leg3 * t263;
+        let t279 = g1_vy_leg1 * t204 - minus_g1_vy_leg2 * t233 - minus_g1_vy_leg3 * t263
+            + t143 * t270;
+        let rate_dot_3_leg1 = t150
+            * (g1_wz_leg1 * t204 + g1_wz_leg2 * t233 - minus_g1_wz_leg3 * t263
+                - t123 * t270 - t147 * t279);
+        let t284 = t194 + t3 * rate_dot_3_leg1;
+        let t285 = 10.0 * t284;
+        let t287 = t192 - t2 * rate_dot_3_leg1;
+        let t288 = 10.0 * t287;
+        let t291 = t146 * t279 - t147 * rate_dot_3_leg1;
+        let t297 = t122 * t270 + t143 * t291 - t123 * rate_dot_3_leg1;
+        let t327 = t15 * (t287 + t297) + t23 * (t291 - t284) + 0.04 * t198;
+        let minus_rate_dot_2_leg1 = t18 * (t327 + t190 * t200);
         let g2_wz_leg1 = t3 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t354 = t310 + t31 * rate_dot_3_leg1 - t216;
-        let t358 = t304 + t34 * rate_dot_3_leg1 + t219;
-        let t362 = t230 * t354 - t224 * t358 + 0.2 * t238;
-        let minus_rate_dot_2_leg2 = t63 * (t362 + t235 * t240);
-        let g2_wz_leg2 = t34 * g2_vy_leg2 - t31 * minus_g2_vx_leg2;
-        let t374 = t304 + t77 * rate_dot_3_leg1 - t248;
-        let t378 = t310 - t84 * rate_dot_3_leg1 - t251;
-        let t382 = t256 * t374 - t262 * t378 - 0.2 * t270;
-        let rate_dot_2_leg3 = t110 * (t382 - t267 * t272);
-        let g2_wz_leg3 = t77 * g2_vy_leg3 + t84 * minus_g2_vx_leg3;
-        let t396 = 5.0 * (t24 * t338 - t16 * t335 + t200);
-        let t398 = 5.0 * t342;
-        let t411 = t68 * t358 - t61 * t354 - t236;
-        let t423 = t115 * t378 - t108 * t374 + t268;
-        let t434 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t441 = rate_2_leg2 - actuator_velocities[1];
-        let t448 = rate_2_leg3 - actuator_velocities[2];
-        let t454 = minus_rate_2_leg1 + rate_3_leg1;
-        let t459 = rate_3_leg1 - rate_2_leg2;
-        let t464 = rate_3_leg1 - rate_2_leg3;
+        let t339 = t297 + t33 * rate_dot_3_leg1 - t207;
+        let t343 = t291 + t38 * rate_dot_3_leg1 + t210;
+        let t347 = t219 * t339 + t214 * t343 + 0.2 * t227;
+        let minus_rate_dot_2_leg2 = t65 * (t347 + t224 * t229);
+        let minus_g2_wz_leg2 = t38 * minus_g2_vy_leg2 + t33 * minus_g2_vx_leg2;
+        let t359 = t291 + t37 * rate_dot_3_leg1 - t237;
+        let t363 = t297 - t32 * rate_dot_3_leg1 - t240;
+        let t367 = t244 * t359 + t249 * t363 + 0.2 * t257;
+        let minus_rate_dot_2_leg3 = t101 * (t367 + t254 * t259);
+        let g2_wz_leg3 = t32 * minus_g2_vx_leg3 - t37 * minus_g2_vy_leg3;
+        let t379 = 5.0 * (t197 + t17 * t204);
+        let t381 = 5.0 * t327;
+        let t394 = t70 * t343 - t63 * t339 - t225;
+        let t406 = t106 * t363 - t99 * t359 + t255;
+        let t417 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t425 = -(minus_rate_2_leg2 + actuator_velocities[1]);
+        let t433 = -(minus_rate_2_leg3 + actuator_velocities[2]);
+        let t439 = minus_rate_2_leg1 + rate_3_leg1;
+        let t444 = rate_3_leg1 + minus_rate_2_leg2;
+        let t449 = rate_3_leg1 + minus_rate_2_leg3;
         Ok([
             [
-                0.0, -t298, -t301, t310, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
+                0.0, -t285, t288, t297, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
                 g1_vx_leg2 * actuator_accelerations[1], g1_vx_leg3 * actuator_accelerations[2],
-                -t162, t161, t164,
+                -t153, t152, t155,
                 -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), -minus_g1_vx_leg1,
                 g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                minus_g2_vx_leg1 * t396 - minus_g1_vx_leg1 * t398,
-                g1_vx_leg2 * t362 - minus_g2_vx_leg2 * t411,
-                minus_g2_vx_leg3 * t423 - g1_vx_leg3 * t382,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t434),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t441),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t448),
-                ::overact::math::signed(minus_g2_vx_leg1, t454),
-                ::overact::math::signed(minus_g2_vx_leg2, t459),
-                ::overact::math::signed(minus_g2_vx_leg3, t464),
+                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                minus_g2_vx_leg1 * t379 - minus_g1_vx_leg1 * t381,
+                g1_vx_leg2 * t347 - minus_g2_vx_leg2 * t394,
+                minus_g2_vx_leg3 * t406 + g1_vx_leg3 * t367,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t417),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t425),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t433),
+                ::overact::math::signed(minus_g2_vx_leg1, t439),
+                ::overact::math::signed(minus_g2_vx_leg2, t444),
+                ::overact::math::signed(minus_g2_vx_leg3, t449),
             ],
             [
-                0.0, t301, -t298, t304, g1_vy_leg1 * actuator_accelerations[0],
+                0.0, -t288, -t285, t291, g1_vy_leg1 * actuator_accelerations[0],
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t167, -t168, -t170,
+                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t158, -t159, -t161,
                 ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t398 + minus_g2_vy_leg1 * t396,
-                g2_vy_leg2 * t411 - minus_g1_vy_leg2 * t362,
-                minus_g1_vy_leg3 * t382 - g2_vy_leg3 * t423,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t434),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t441),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t448),
-                ::overact::math::signed(minus_g2_vy_leg1, t454),
-                -::overact::math::signed(g2_vy_leg2, t459),
-                -::overact::math::signed(g2_vy_leg3, t464),
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                g1_vy_leg1 * t381 + minus_g2_vy_leg1 * t379,
+                -(minus_g2_vy_leg2 * t394 + minus_g1_vy_leg2 * t347),
+                minus_g2_vy_leg3 * t406 - minus_g1_vy_leg3 * t367,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t417),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t425),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t433),
+                ::overact::math::signed(minus_g2_vy_leg1, t439),
+                ::overact::math::signed(minus_g2_vy_leg2, t444),
+                ::overact::math::signed(minus_g2_vy_leg3, t449),
             ],
             [
-                rate_dot_3_leg1, c_phi * t304 - s_phi * t310, -(c_phi * t310 + s_phi * t304), 0.0,
+                rate_dot_3_leg1, c_phi * t291 - s_phi * t297, -(s_phi * t291 + c_phi * t297), 0.0,
                 g1_wz_leg1 * actuator_accelerations[0], g1_wz_leg2 * actuator_accelerations[1],
-                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t175, t176, -t178,
+                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t166, t167, -t169,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
                 g1_wz_leg2, -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                g1_wz_leg1 * t398 - g2_wz_leg1 * t396, g1_wz_leg2 * t362 + g2_wz_leg2 * t411,
-                minus_g1_wz_leg3 * t382 - g2_wz_leg3 * t423,
-                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t434),
-                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t441),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t448),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t454),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t459),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t464),
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
+                g1_wz_leg1 * t381 - g2_wz_leg1 * t379, g1_wz_leg2 * t347 - minus_g2_wz_leg2 * t394,
+                -(minus_g1_wz_leg3 * t367 + g2_wz_leg3 * t406),
+                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t417),
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t425),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t433),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t439),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t444),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t449),
             ],
         ])
     }
@@ -3367,7 +3369,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 432 operations (165 additions, 260 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 401 intermediates.
+    /// 426 operations (163 additions, 256 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 395 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3377,212 +3379,210 @@ impl Planar3Rrr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t26 = t17 * t23 - 0.5 * t14;
-        let t27 = t14 + t26;
-        let t31 = 0.5 * t17 + t14 * t23;
-        let t32 = t17 - t31;
-        let t34 = 4.330127018922193 * t27 + 2.5 * t32;
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = t34 * t36;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t41 = 0.1 * minus_c123_leg2;
-        let t43 = pose[0] + t41 - 0.3031088913245535;
+        let t5 = 0.1 * minus_c123_leg2;
+        let t6 = 0.1 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t48 = 0.1 * minus_s123_leg2;
-        let t50 = pose[1] + t48 + 0.175;
-        let t52 = 0.8660254037844386 * t43 - 0.5 * t50;
-        let t56 = 0.5 * t43 + 0.8660254037844386 * t50;
-        let t59 = t52 * t52 + t56 * t56;
-        let t61 = 0.04 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t52 + t56 * t62;
-        let t65 = t52 - t64;
-        let t69 = 0.5 * t56 - t52 * t62;
-        let t70 = t56 - t69;
-        let t72 = 2.5 * t65 - 4.330127018922193 * t70;
-        let t73 = t59 * t62;
-        ::overact::guard::leg(t73, 0.03903123748998999, "leg3")?;
-        let t74 = 0.2 / t73;
-        let minus_g1_vy_leg3 = t72 * t74;
-        let t79 = 4.330127018922193 * t32 - 2.5 * t27;
-        let minus_g1_vy_leg2 = t79 * t36;
-        let t83 = 4.330127018922193 * t65 + 2.5 * t70;
-        let g1_vx_leg3 = t83 * t74;
-        let t87 = 0.1 * c_phi;
-        let t89 = pose[1] + t87 - 0.35;
-        let t91 = 0.1 * s_phi;
-        let t92 = pose[0] - t91;
-        let t95 = t89 * t89 + t92 * t92;
-        let t97 = 0.04 / t95 - 0.25;
-        ::overact::guard::reach(t97, "leg1")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let t100 = 0.5 * t89 - t92 * t98;
-        let t101 = t89 - t100;
-        let t102 = t95 * t98;
-        ::overact::guard::leg(t102, 0.03903123748998999, "leg1")?;
-        let t103 = 1.0 / t102;
-        let g1_vy_leg1 = t101 * t103;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let t111 = 0.5 * t92 + t89 * t98;
-        let t112 = t111 - t92;
-        let minus_g1_vx_leg1 = t112 * t103;
-        let g1_wz_leg1 = t87 * minus_g1_vx_leg1 - t91 * g1_vy_leg1;
-        let t118 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t122 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let minus_g1_wz_leg3 = t41 * minus_g1_vy_leg3 + t48 * g1_vx_leg3;
-        let t130 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t132 = g1_vx_leg3 * t118 - minus_g1_vy_leg3 * t122 - minus_g1_wz_leg3 * t130;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t133;
-        let t139 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t133;
-        let t141 = t130 * t133;
-        let t146 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t133;
-        let t147 = t87 * acceleration[2];
-        let t148 = t91 * twist[2];
-        let t149 = twist[2] * t148;
-        let t151 = 10.0 * (t147 - t149);
-        let t156 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t133;
-        let t157 = t87 * twist[2];
-        let t158 = twist[2] * t157;
-        let t159 = t91 * acceleration[2];
-        let t161 = 10.0 * (t158 + t159);
-        let t166 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t14 = 0.1 * minus_s123_leg2;
+        let t15 = 0.1 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t26 = t20 * t20 + t23 * t23;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t23 * t29 - 0.5 * t20;
+        let t33 = t20 + t32;
+        let t37 = 0.5 * t23 + t20 * t29;
+        let t38 = t23 - t37;
+        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
+        let t41 = t26 * t29;
+        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
+        let t42 = 0.2 / t41;
+        let g1_vx_leg2 = t40 * t42;
+        let t45 = pose[0] + t5 - 0.3031088913245535;
+        let t48 = pose[1] + t14 + 0.175;
+        let t50 = 0.8660254037844386 * t45 - 0.5 * t48;
+        let t54 = 0.5 * t45 + 0.8660254037844386 * t48;
+        let t57 = t50 * t50 + t54 * t54;
+        let t59 = 0.04 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.5 * t50 + t54 * t60;
+        let t63 = t50 - t62;
+        let t67 = 0.5 * t54 - t50 * t60;
+        let t68 = t54 - t67;
+        let t70 = 2.5 * t63 - 4.330127018922193 * t68;
+        let t71 = t57 * t60;
+        ::overact::guard::leg(t71, 0.03903123748998999, "leg3")?;
+        let t72 = 0.2 / t71;
+        let minus_g1_vy_leg3 = t70 * t72;
+        let t77 = 4.330127018922193 * t38 - 2.5 * t33;
+        let minus_g1_vy_leg2 = t77 * t42;
+        let t81 = 4.330127018922193 * t63 + 2.5 * t68;
+        let g1_vx_leg3 = t81 * t72;
+        let t86 = pose[1] + t15 - 0.35;
+        let t88 = pose[0] - t6;
+        let t91 = t86 * t86 + t88 * t88;
+        let t93 = 0.04 / t91 - 0.25;
+        ::overact::guard::reach(t93, "leg1")?;
+        let t94 = ::overact::math::sqrt(t93);
+        let t96 = 0.5 * t86 - t88 * t94;
+        let t97 = t86 - t96;
+        let t98 = t91 * t94;
+        ::overact::guard::leg(t98, 0.03903123748998999, "leg1")?;
+        let t99 = 1.0 / t98;
+        let g1_vy_leg1 = t97 * t99;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let t107 = 0.5 * t88 + t86 * t94;
+        let t108 = t107 - t88;
+        let minus_g1_vx_leg1 = t108 * t99;
+        let g1_wz_leg1 = t15 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
+        let t114 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t118 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let minus_g1_wz_leg3 = t5 * minus_g1_vy_leg3 + t14 * g1_vx_leg3;
+        let t126 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t128 = g1_vx_leg3 * t114 - minus_g1_vy_leg3 * t118 - minus_g1_wz_leg3 * t126;
+        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t129;
+        let t135 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t129;
+        let t137 = t126 * t129;
+        let t142 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t129;
+        let t143 = t15 * twist[2];
+        let t146 = twist[2] * t143 + t6 * acceleration[2];
+        let t147 = 10.0 * t146;
+        let t152 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t129;
+        let t153 = t6 * twist[2];
+        let t156 = twist[2] * t153 - t15 * acceleration[2];
+        let t157 = 10.0 * t156;
+        let t162 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t168 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t129;
         let t173 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t133;
-        let t178 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t133;
-        let t182 = t122 * t133;
-        let t184 = t118 * t133;
-        let t191 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t217 = acceleration[1] - t159 - t158;
-        let t220 = acceleration[0] - t147 + t149;
-        let minus_g2_vx_leg1 = t111 * t103;
-        let t224 = twist[0] - t157;
-        let minus_g2_vy_leg1 = t100 * t103;
-        let t227 = twist[1] - t148;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t224 + minus_g2_vy_leg1 * t227;
-        let t230 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t232 = t101 * t217 - t112 * t220 + 0.04 * t230;
-        let rate_1_leg1 = g1_vy_leg1 * t227 - minus_g1_vx_leg1 * t224;
-        let t236 = rate_1_leg1 * rate_1_leg1;
-        let t238 = 0.5 * (t95 - 0.08);
-        let rate_dot_1_leg1 = t103 * (t232 + t236 * t238);
-        let t244 = t10 * twist[2];
-        let t246 = acceleration[1] + t4 * acceleration[2] + twist[2] * t244;
-        let t250 = t4 * twist[2];
-        let t252 = acceleration[0] + t10 * acceleration[2] - twist[2] * t250;
-        let t257 = 4.330127018922193 * t31 + 2.5 * t26;
-        let g2_vy_leg2 = t257 * t36;
-        let t259 = twist[1] + t250;
-        let t263 = 2.5 * t31 - 4.330127018922193 * t26;
-        let minus_g2_vx_leg2 = t263 * t36;
-        let t265 = twist[0] + t244;
-        let rate_2_leg2 = g2_vy_leg2 * t259 - minus_g2_vx_leg2 * t265;
-        let t268 = rate_2_leg2 * rate_2_leg2;
-        let t270 = t79 * t246 - t34 * t252 - 0.2 * t268;
-        let rate_1_leg2 = g1_vx_leg2 * t265 - minus_g1_vy_leg2 * t259;
-        let t274 = rate_1_leg2 * rate_1_leg2;
-        let t276 = 2.5 * (t20 - 0.08);
-        let minus_rate_dot_1_leg2 = t36 * (t270 - t274 * t276);
-        let t282 = t41 * twist[2];
-        let t284 = acceleration[0] - t48 * acceleration[2] - twist[2] * t282;
-        let t288 = t48 * twist[2];
-        let t290 = acceleration[1] + t41 * acceleration[2] - twist[2] * t288;
-        let t295 = 2.5 * t64 - 4.330127018922193 * t69;
-        let g2_vy_leg3 = t295 * t74;
-        let t297 = twist[1] + t282;
-        let t301 = 4.330127018922193 * t64 + 2.5 * t69;
-        let minus_g2_vx_leg3 = t301 * t74;
-        let t303 = twist[0] - t288;
-        let rate_2_leg3 = g2_vy_leg3 * t297 - minus_g2_vx_leg3 * t303;
-        let t306 = rate_2_leg3 * rate_2_leg3;
-        let t308 = t83 * t284 - t72 * t290 + 0.2 * t306;
-        let rate_1_leg3 = g1_vx_leg3 * t303 - minus_g1_vy_leg3 * t297;
-        let t312 = rate_1_leg3 * rate_1_leg3;
-        let t314 = 2.5 * (t59 - 0.08);
-        let rate_dot_1_leg3 = t74 * (t308 + t312 * t314);
-        let g2_wz_leg1 = t91 * minus_g2_vy_leg1 + t87 * minus_g2_vx_leg1;
-        let t328 = minus_g2_vx_leg1 * t156 + minus_g2_vy_leg1 * t146 + g2_wz_leg1 * t134;
-        let t333 = t111 * t220 + t100 * t217 + 0.04 * t236;
-        let minus_rate_dot_2_leg1 = t103 * (t333 + t230 * t238);
-        let t342 = minus_g2_vy_leg1 * t178 - minus_g2_vx_leg1 * t173 + g2_wz_leg1 * t139;
-        let t348 = g2_wz_leg1 * t141
-            - (minus_g2_vx_leg1 * t184 + minus_g2_vy_leg1 * t182);
-        let g2_wz_leg2 = t4 * g2_vy_leg2 - t10 * minus_g2_vx_leg2;
-        let t357 = g2_vy_leg2 * t146 - minus_g2_vx_leg2 * t156 - g2_wz_leg2 * t134;
-        let t362 = t263 * t252 - t257 * t246 + 0.2 * t274;
-        let minus_rate_dot_2_leg2 = t36 * (t362 + t268 * t276);
-        let t371 = g2_wz_leg2 * t139 - (minus_g2_vx_leg2 * t173 + g2_vy_leg2 * t178);
-        let t377 = g2_vy_leg2 * t182 - minus_g2_vx_leg2 * t184 + g2_wz_leg2 * t141;
-        let g2_wz_leg3 = t41 * g2_vy_leg3 + t48 * minus_g2_vx_leg3;
-        let t386 = g2_vy_leg3 * t146 - minus_g2_vx_leg3 * t156 - g2_wz_leg3 * t134;
-        let t391 = t295 * t290 - t301 * t284 - 0.2 * t312;
-        let rate_dot_2_leg3 = t74 * (t391 - t306 * t314);
-        let t400 = g2_wz_leg3 * t139 - (minus_g2_vx_leg3 * t173 + g2_vy_leg3 * t178);
-        let t406 = g2_vy_leg3 * t182 - minus_g2_vx_leg3 * t184 + g2_wz_leg3 * t141;
-        let t409 = 5.0 * t232;
-        let t423 = rate_1_leg1 + minus_rate_2_leg1;
-        let t427 = rate_2_leg2 - rate_1_leg2;
-        let t432 = rate_2_leg3 - rate_1_leg3;
-        let t438 = minus_rate_2_leg1 + twist[2];
-        let t445 = twist[2] - rate_2_leg2;
-        let t452 = twist[2] - rate_2_leg3;
+            * t129;
+        let t179 = t114 * t129;
+        let t181 = t118 * t129;
+        let t190 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t212 = acceleration[1] - t146;
+        let t214 = t156 + acceleration[0];
+        let minus_g2_vx_leg1 = t107 * t99;
+        let t218 = twist[0] - t143;
+        let minus_g2_vy_leg1 = t96 * t99;
+        let t221 = twist[1] - t153;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t218 + minus_g2_vy_leg1 * t221;
+        let t224 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t226 = t97 * t212 - t108 * t214 + 0.04 * t224;
+        let rate_1_leg1 = g1_vy_leg1 * t221 - minus_g1_vx_leg1 * t218;
+        let t230 = rate_1_leg1 * rate_1_leg1;
+        let t232 = 0.5 * (t91 - 0.08);
+        let rate_dot_1_leg1 = t99 * (t226 + t230 * t232);
+        let t238 = t16 * twist[2];
+        let t240 = acceleration[1] + t7 * acceleration[2] + twist[2] * t238;
+        let t244 = t7 * twist[2];
+        let t246 = acceleration[0] + t16 * acceleration[2] - twist[2] * t244;
+        let t251 = 4.330127018922193 * t37 + 2.5 * t32;
+        let g2_vy_leg2 = t251 * t42;
+        let t253 = twist[1] + t244;
+        let t257 = 2.5 * t37 - 4.330127018922193 * t32;
+        let minus_g2_vx_leg2 = t257 * t42;
+        let t259 = twist[0] + t238;
+        let rate_2_leg2 = g2_vy_leg2 * t253 - minus_g2_vx_leg2 * t259;
+        let t262 = rate_2_leg2 * rate_2_leg2;
+        let t264 = t77 * t240 - t40 * t246 - 0.2 * t262;
+        let rate_1_leg2 = g1_vx_leg2 * t259 - minus_g1_vy_leg2 * t253;
+        let t268 = rate_1_leg2 * rate_1_leg2;
+        let t270 = 2.5 * (t26 - 0.08);
+        let minus_rate_dot_1_leg2 = t42 * (t264 - t268 * t270);
+        let t276 = t5 * twist[2];
+        let t278 = acceleration[0] - t14 * acceleration[2] - twist[2] * t276;
+        let t282 = t14 * twist[2];
+        let t284 = acceleration[1] + t5 * acceleration[2] - twist[2] * t282;
+        let t289 = 2.5 * t62 - 4.330127018922193 * t67;
+        let g2_vy_leg3 = t289 * t72;
+        let t291 = twist[1] + t276;
+        let t295 = 4.330127018922193 * t62 + 2.5 * t67;
+        let minus_g2_vx_leg3 = t295 * t72;
+        let t297 = twist[0] - t282;
+        let rate_2_leg3 = g2_vy_leg3 * t291 - minus_g2_vx_leg3 * t297;
+        let t300 = rate_2_leg3 * rate_2_leg3;
+        let t302 = t81 * t278 - t70 * t284 + 0.2 * t300;
+        let rate_1_leg3 = g1_vx_leg3 * t297 - minus_g1_vy_leg3 * t291;
+        let t306 = rate_1_leg3 * rate_1_leg3;
+        let t308 = 2.5 * (t57 - 0.08);
+        let rate_dot_1_leg3 = t72 * (t302 + t306 * t308);
+        let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t15 * minus_g2_vx_leg1;
+        let t322 = minus_g2_vx_leg1 * t142 + minus_g2_vy_leg1 * t152 + g2_wz_leg1 * t130;
+        let t327 = t107 * t214 + t96 * t212 + 0.04 * t230;
+        let minus_rate_dot_2_leg1 = t99 * (t327 + t224 * t232);
+        let t336 = minus_g2_vy_leg1 * t168 - minus_g2_vx_leg1 * t173 + g2_wz_leg1 * t135;
+        let t342 = g2_wz_leg1 * t137
+            - (minus_g2_vx_leg1 * t179 + minus_g2_vy_leg1 * t181);
+        let g2_wz_leg2 = t7 * g2_vy_leg2 - t16 * minus_g2_vx_leg2;
+        let t351 = g2_vy_leg2 * t152 - minus_g2_vx_leg2 * t142 - g2_wz_leg2 * t130;
+        let t356 = t257 * t246 - t251 * t240 + 0.2 * t268;
+        let minus_rate_dot_2_leg2 = t42 * (t356 + t262 * t270);
+        let t365 = g2_wz_leg2 * t135 - (minus_g2_vx_leg2 * t173 + g2_vy_leg2 * t168);
+        let t371 = g2_vy_leg2 * t181 - minus_g2_vx_leg2 * t179 + g2_wz_leg2 * t137;
+        let g2_wz_leg3 = t5 * g2_vy_leg3 + t14 * minus_g2_vx_leg3;
+        let t380 = g2_vy_leg3 * t152 - minus_g2_vx_leg3 * t142 - g2_wz_leg3 * t130;
+        let t385 = t289 * t284 - t295 * t278 - 0.2 * t306;
+        let rate_dot_2_leg3 = t72 * (t385 - t300 * t308);
+        let t394 = g2_wz_leg3 * t135 - (minus_g2_vx_leg3 * t173 + g2_vy_leg3 * t168);
+        let t400 = g2_vy_leg3 * t181 - minus_g2_vx_leg3 * t179 + g2_wz_leg3 * t137;
+        let t403 = 5.0 * t226;
+        let t417 = rate_1_leg1 + minus_rate_2_leg1;
+        let t421 = rate_2_leg2 - rate_1_leg2;
+        let t426 = rate_2_leg3 - rate_1_leg3;
+        let t432 = minus_rate_2_leg1 + twist[2];
+        let t439 = twist[2] - rate_2_leg2;
+        let t446 = twist[2] - rate_2_leg3;
         Ok([
             [
-                -(t134 * acceleration[2]), t146 * t151 - t156 * t161 - t134 * t166,
-                t134 * t191 - (t156 * t151 + t146 * t161),
-                t156 * acceleration[0] + t146 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
+                -(t130 * acceleration[2]), -(t142 * t147 + t152 * t157 + t130 * t162),
+                t142 * t157 - t152 * t147 + t130 * t190,
+                t142 * acceleration[0] + t152 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
                 rate_1_leg1, 0.0, 0.0, ::overact::math::sign(rate_1_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t328 * minus_rate_dot_2_leg1, -(t357 * minus_rate_dot_2_leg2),
-                t386 * rate_dot_2_leg3, 5.0 * t333 + t328 * t409, t357 * t270, -(t386 * t308),
-                ::overact::math::signed(1.0 + t328, t423), ::overact::math::signed(t357, t427),
-                ::overact::math::signed(t386, t432), ::overact::math::signed(t328 - t134, t438),
-                -::overact::math::signed(t357 + t134, t445),
-                -::overact::math::signed(t386 + t134, t452),
+                t322 * minus_rate_dot_2_leg1, -(t351 * minus_rate_dot_2_leg2),
+                t380 * rate_dot_2_leg3, 5.0 * t327 + t322 * t403, t351 * t264, -(t380 * t302),
+                ::overact::math::signed(1.0 + t322, t417), ::overact::math::signed(t351, t421),
+                ::overact::math::signed(t380, t426), ::overact::math::signed(t322 - t130, t432),
+                -::overact::math::signed(t351 + t130, t439),
+                -::overact::math::signed(t380 + t130, t446),
             ],
             [
-                t139 * acceleration[2], t139 * t166 - (t173 * t161 + t178 * t151),
-                t178 * t161 - t173 * t151 - t139 * t191,
-                t173 * acceleration[0] - t178 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                t135 * acceleration[2], t168 * t157 - t173 * t147 + t135 * t162,
+                t173 * t157 + t168 * t147 - t135 * t190,
+                t173 * acceleration[0] - t168 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
                 0.0, rate_1_leg2, 0.0, 0.0, ::overact::math::sign(rate_1_leg2), 0.0, 0.0, 1.0, 0.0,
-                -(t342 * minus_rate_dot_2_leg1), -(t371 * minus_rate_dot_2_leg2),
-                t400 * rate_dot_2_leg3, -(t342 * t409), t362 + t371 * t270, -(t400 * t308),
-                -::overact::math::signed(t342, t423), ::overact::math::signed(t371 - 1.0, t427),
-                ::overact::math::signed(t400, t432), ::overact::math::signed(t139 - t342, t438),
-                ::overact::math::signed(t139 - t371, t445),
-                ::overact::math::signed(t139 - t400, t452),
+                -(t336 * minus_rate_dot_2_leg1), -(t365 * minus_rate_dot_2_leg2),
+                t394 * rate_dot_2_leg3, -(t336 * t403), t356 + t365 * t264, -(t394 * t302),
+                -::overact::math::signed(t336, t417), ::overact::math::signed(t365 - 1.0, t421),
+                ::overact::math::signed(t394, t426), ::overact::math::signed(t135 - t336, t432),
+                ::overact::math::signed(t135 - t365, t439),
+                ::overact::math::signed(t135 - t394, t446),
             ],
             [
-                t141 * acceleration[2], t182 * t151 - t184 * t161 + t141 * t166,
-                -(t184 * t151 + t182 * t161 + t141 * t191),
-                t184 * acceleration[0] + t182 * acceleration[1], 0.0, 0.0, rate_dot_1_leg3, 0.0,
+                t137 * acceleration[2], t137 * t162 - (t179 * t147 + t181 * t157),
+                t179 * t157 - t181 * t147 - t137 * t190,
+                t179 * acceleration[0] + t181 * acceleration[1], 0.0, 0.0, rate_dot_1_leg3, 0.0,
                 0.0, rate_1_leg3, 0.0, 0.0, ::overact::math::sign(rate_1_leg3), 0.0, 0.0, 1.0,
-                -(t348 * minus_rate_dot_2_leg1), -(t377 * minus_rate_dot_2_leg2),
-                t406 * rate_dot_2_leg3, -(t348 * t409), t377 * t270, -(t391 + t406 * t308),
-                -::overact::math::signed(t348, t423), ::overact::math::signed(t377, t427),
-                ::overact::math::signed(t406 - 1.0, t432),
-                ::overact::math::signed(t141 - t348, t438),
-                ::overact::math::signed(t141 - t377, t445),
-                ::overact::math::signed(t141 - t406, t452),
+                -(t342 * minus_rate_dot_2_leg1), -(t371 * minus_rate_dot_2_leg2),
+                t400 * rate_dot_2_leg3, -(t342 * t403), t371 * t264, -(t385 + t400 * t302),
+                -::overact::math::signed(t342, t417), ::overact::math::signed(t371, t421),
+                ::overact::math::signed(t400 - 1.0, t426),
+                ::overact::math::signed(t137 - t342, t432),
+                ::overact::math::signed(t137 - t371, t439),
+                ::overact::math::signed(t137 - t400, t446),
             ],
         ])
     }
@@ -3597,7 +3597,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 374 operations (135 additions, 235 multiplications, 4 divisions), 0 square roots, 7 trigonometric pairs, 21 signs, 352 intermediates.
+    /// 372 operations (133 additions, 235 multiplications, 4 divisions), 0 square roots, 7 trigonometric pairs, 21 signs, 350 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3660,128 +3660,126 @@ impl Planar3Rrr {
         let t102 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
             * t89;
         let t103 = t55 * twist[2];
-        let t104 = twist[2] * t103;
-        let t105 = t58 * acceleration[2];
-        let t107 = 10.0 * (t104 + t105);
+        let t106 = twist[2] * t103 + t58 * acceleration[2];
+        let t107 = 10.0 * t106;
         let t112 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t89;
-        let t113 = t55 * acceleration[2];
-        let t114 = t58 * twist[2];
-        let t115 = twist[2] * t114;
-        let t117 = 10.0 * (t113 - t115);
+        let t113 = t58 * twist[2];
+        let t116 = twist[2] * t113 - t55 * acceleration[2];
+        let t117 = 10.0 * t116;
         let t122 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t128 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3) * t89;
         let t133 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3) * t89;
         let t138 = t76 * t89;
         let t140 = t72 * t89;
-        let t150 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t173 = acceleration[1] - t105 - t104;
-        let t176 = acceleration[0] - t113 + t115;
+        let t150 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t172 = acceleration[1] - t106;
+        let t174 = t116 + acceleration[0];
         let g2_vx_leg1 = s1_leg1 * t51;
-        let t180 = twist[0] - t103;
+        let t178 = twist[0] - t103;
         let minus_g2_vy_leg1 = c1_leg1 * t51;
-        let t183 = twist[1] - t114;
-        let rate_2_leg1 = g2_vx_leg1 * t180 - minus_g2_vy_leg1 * t183;
-        let t186 = rate_2_leg1 * rate_2_leg1;
-        let t188 = c12_leg1 * t173 - s12_leg1 * t176 + 0.2 * t186;
-        let rate_1_leg1 = g1_vy_leg1 * t183 - minus_g1_vx_leg1 * t180;
-        let t192 = rate_1_leg1 * rate_1_leg1;
-        let t193 = 0.2 * c2_leg1;
-        let rate_dot_1_leg1 = t51 * (t188 + t192 * t193);
-        let t199 = t64 * twist[2];
-        let t201 = acceleration[1] + t68 * acceleration[2] + twist[2] * t199;
-        let t205 = t68 * twist[2];
-        let t207 = acceleration[0] + t64 * acceleration[2] - twist[2] * t205;
-        let t212 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t212 * t13;
-        let t214 = twist[1] + t205;
-        let t218 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t218 * t13;
-        let t220 = twist[0] + t199;
-        let rate_2_leg2 = g2_vy_leg2 * t214 - minus_g2_vx_leg2 * t220;
-        let t223 = rate_2_leg2 * rate_2_leg2;
-        let t225 = t33 * t201 - t12 * t207 - 0.2 * t223;
-        let rate_1_leg2 = g1_vx_leg2 * t220 - minus_g1_vy_leg2 * t214;
-        let t229 = rate_1_leg2 * rate_1_leg2;
-        let t230 = 0.2 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t13 * (t225 - t229 * t230);
-        let t236 = t79 * twist[2];
-        let t238 = acceleration[0] - t81 * acceleration[2] - twist[2] * t236;
-        let t242 = t81 * twist[2];
-        let t244 = acceleration[1] + t79 * acceleration[2] - twist[2] * t242;
-        let t249 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t249 * t28;
-        let t251 = twist[1] + t236;
-        let t255 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t255 * t28;
-        let t257 = twist[0] - t242;
-        let rate_2_leg3 = g2_vy_leg3 * t251 - minus_g2_vx_leg3 * t257;
-        let t260 = rate_2_leg3 * rate_2_leg3;
-        let t262 = t37 * t238 - t27 * t244 + 0.2 * t260;
-        let rate_1_leg3 = g1_vx_leg3 * t257 - minus_g1_vy_leg3 * t251;
-        let t266 = rate_1_leg3 * rate_1_leg3;
-        let t267 = 0.2 * c2_leg3;
-        let rate_dot_1_leg3 = t28 * (t262 + t266 * t267);
+        let t181 = twist[1] - t113;
+        let rate_2_leg1 = g2_vx_leg1 * t178 - minus_g2_vy_leg1 * t181;
+        let t184 = rate_2_leg1 * rate_2_leg1;
+        let t186 = c12_leg1 * t172 - s12_leg1 * t174 + 0.2 * t184;
+        let rate_1_leg1 = g1_vy_leg1 * t181 - minus_g1_vx_leg1 * t178;
+        let t190 = rate_1_leg1 * rate_1_leg1;
+        let t191 = 0.2 * c2_leg1;
+        let rate_dot_1_leg1 = t51 * (t186 + t190 * t191);
+        let t197 = t64 * twist[2];
+        let t199 = acceleration[1] + t68 * acceleration[2] + twist[2] * t197;
+        let t203 = t68 * twist[2];
+        let t205 = acceleration[0] + t64 * acceleration[2] - twist[2] * t203;
+        let t210 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = t210 * t13;
+        let t212 = twist[1] + t203;
+        let t216 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = t216 * t13;
+        let t218 = twist[0] + t197;
+        let rate_2_leg2 = g2_vy_leg2 * t212 - minus_g2_vx_leg2 * t218;
+        let t221 = rate_2_leg2 * rate_2_leg2;
+        let t223 = t33 * t199 - t12 * t205 - 0.2 * t221;
+        let rate_1_leg2 = g1_vx_leg2 * t218 - minus_g1_vy_leg2 * t212;
+        let t227 = rate_1_leg2 * rate_1_leg2;
+        let t228 = 0.2 * c2_leg2;
+        let minus_rate_dot_1_leg2 = t13 * (t223 - t227 * t228);
+        let t234 = t79 * twist[2];
+        let t236 = acceleration[0] - t81 * acceleration[2] - twist[2] * t234;
+        let t240 = t81 * twist[2];
+        let t242 = acceleration[1] + t79 * acceleration[2] - twist[2] * t240;
+        let t247 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t247 * t28;
+        let t249 = twist[1] + t234;
+        let t253 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = t253 * t28;
+        let t255 = twist[0] - t240;
+        let rate_2_leg3 = g2_vy_leg3 * t249 - minus_g2_vx_leg3 * t255;
+        let t258 = rate_2_leg3 * rate_2_leg3;
+        let t260 = t37 * t236 - t27 * t242 + 0.2 * t258;
+        let rate_1_leg3 = g1_vx_leg3 * t255 - minus_g1_vy_leg3 * t249;
+        let t264 = rate_1_leg3 * rate_1_leg3;
+        let t265 = 0.2 * c2_leg3;
+        let rate_dot_1_leg3 = t28 * (t260 + t264 * t265);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t58 - g2_vx_leg1 * t55;
-        let t281 = minus_g2_vy_leg1 * t112 - g2_vx_leg1 * t102 + g2_wz_leg1 * t90;
-        let t286 = s1_leg1 * t176 - c1_leg1 * t173 - 0.2 * t192;
-        let rate_dot_2_leg1 = t51 * (t286 - t186 * t193);
-        let t295 = g2_vx_leg1 * t128 + minus_g2_vy_leg1 * t133 + g2_wz_leg1 * t95;
-        let t301 = minus_g2_vy_leg1 * t140 - g2_vx_leg1 * t138 + g2_wz_leg1 * t97;
+        let t279 = minus_g2_vy_leg1 * t112 - g2_vx_leg1 * t102 + g2_wz_leg1 * t90;
+        let t284 = s1_leg1 * t174 - c1_leg1 * t172 - 0.2 * t190;
+        let rate_dot_2_leg1 = t51 * (t284 - t184 * t191);
+        let t293 = g2_vx_leg1 * t128 + minus_g2_vy_leg1 * t133 + g2_wz_leg1 * t95;
+        let t299 = minus_g2_vy_leg1 * t140 - g2_vx_leg1 * t138 + g2_wz_leg1 * t97;
         let g2_wz_leg2 = g2_vy_leg2 * t68 - minus_g2_vx_leg2 * t64;
-        let t310 = minus_g2_vx_leg2 * t102 - g2_vy_leg2 * t112 + g2_wz_leg2 * t90;
-        let t315 = t218 * t207 - t212 * t201 + 0.2 * t229;
-        let minus_rate_dot_2_leg2 = t13 * (t315 + t223 * t230);
-        let t324 = minus_g2_vx_leg2 * t128 + g2_vy_leg2 * t133 - g2_wz_leg2 * t95;
-        let t330 = minus_g2_vx_leg2 * t138 - g2_vy_leg2 * t140 + g2_wz_leg2 * t97;
+        let t308 = minus_g2_vx_leg2 * t102 - g2_vy_leg2 * t112 + g2_wz_leg2 * t90;
+        let t313 = t216 * t205 - t210 * t199 + 0.2 * t227;
+        let minus_rate_dot_2_leg2 = t13 * (t313 + t221 * t228);
+        let t322 = minus_g2_vx_leg2 * t128 + g2_vy_leg2 * t133 - g2_wz_leg2 * t95;
+        let t328 = minus_g2_vx_leg2 * t138 - g2_vy_leg2 * t140 + g2_wz_leg2 * t97;
         let g2_wz_leg3 = g2_vy_leg3 * t79 + minus_g2_vx_leg3 * t81;
-        let t339 = minus_g2_vx_leg3 * t102 - g2_vy_leg3 * t112 + g2_wz_leg3 * t90;
-        let t344 = t249 * t244 - t255 * t238 - 0.2 * t266;
-        let rate_dot_2_leg3 = t28 * (t344 - t260 * t267);
-        let t353 = minus_g2_vx_leg3 * t128 + g2_vy_leg3 * t133 - g2_wz_leg3 * t95;
-        let t359 = minus_g2_vx_leg3 * t138 - g2_vy_leg3 * t140 + g2_wz_leg3 * t97;
-        let t374 = rate_2_leg1 - rate_1_leg1;
-        let t378 = rate_2_leg2 - rate_1_leg2;
-        let t383 = rate_2_leg3 - rate_1_leg3;
-        let t389 = twist[2] - rate_2_leg1;
-        let t396 = twist[2] - rate_2_leg2;
-        let t403 = twist[2] - rate_2_leg3;
+        let t337 = minus_g2_vx_leg3 * t102 - g2_vy_leg3 * t112 + g2_wz_leg3 * t90;
+        let t342 = t247 * t242 - t253 * t236 - 0.2 * t264;
+        let rate_dot_2_leg3 = t28 * (t342 - t258 * t265);
+        let t351 = minus_g2_vx_leg3 * t128 + g2_vy_leg3 * t133 - g2_wz_leg3 * t95;
+        let t357 = minus_g2_vx_leg3 * t138 - g2_vy_leg3 * t140 + g2_wz_leg3 * t97;
+        let t372 = rate_2_leg1 - rate_1_leg1;
+        let t376 = rate_2_leg2 - rate_1_leg2;
+        let t381 = rate_2_leg3 - rate_1_leg3;
+        let t387 = twist[2] - rate_2_leg1;
+        let t394 = twist[2] - rate_2_leg2;
+        let t401 = twist[2] - rate_2_leg3;
         Ok([
             [
-                t90 * acceleration[2], t102 * t107 - t112 * t117 + t90 * t122,
-                t102 * t117 + t112 * t107 - t90 * t150,
+                t90 * acceleration[2], t102 * t107 + t112 * t117 + t90 * t122,
+                t112 * t107 - t102 * t117 - t90 * t150,
                 -(t102 * acceleration[0] + t112 * acceleration[1]), rate_dot_1_leg1, 0.0, 0.0,
                 rate_1_leg1, 0.0, 0.0, ::overact::math::sign(rate_1_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t281 * rate_dot_2_leg1, -(t310 * minus_rate_dot_2_leg2), t339 * rate_dot_2_leg3,
-                -(t286 + t281 * t188), t310 * t225, -(t339 * t262),
-                ::overact::math::signed(t281 - 1.0, t374), ::overact::math::signed(t310, t378),
-                ::overact::math::signed(t339, t383), ::overact::math::signed(t90 - t281, t389),
-                ::overact::math::signed(t90 - t310, t396),
-                ::overact::math::signed(t90 - t339, t403),
+                t279 * rate_dot_2_leg1, -(t308 * minus_rate_dot_2_leg2), t337 * rate_dot_2_leg3,
+                -(t284 + t279 * t186), t308 * t223, -(t337 * t260),
+                ::overact::math::signed(t279 - 1.0, t372), ::overact::math::signed(t308, t376),
+                ::overact::math::signed(t337, t381), ::overact::math::signed(t90 - t279, t387),
+                ::overact::math::signed(t90 - t308, t394),
+                ::overact::math::signed(t90 - t337, t401),
             ],
             [
-                -(t95 * acceleration[2]), t128 * t107 + t133 * t117 - t95 * t122,
-                t128 * t117 - t133 * t107 + t95 * t150,
+                -(t95 * acceleration[2]), t128 * t107 - t133 * t117 - t95 * t122,
+                t95 * t150 - (t128 * t117 + t133 * t107),
                 t133 * acceleration[1] - t128 * acceleration[0], 0.0, -minus_rate_dot_1_leg2, 0.0,
                 0.0, rate_1_leg2, 0.0, 0.0, ::overact::math::sign(rate_1_leg2), 0.0, 0.0, 1.0, 0.0,
-                -(t295 * rate_dot_2_leg1), -(t324 * minus_rate_dot_2_leg2), t353 * rate_dot_2_leg3,
-                t295 * t188, t315 + t324 * t225, -(t353 * t262),
-                -::overact::math::signed(t295, t374), ::overact::math::signed(t324 - 1.0, t378),
-                ::overact::math::signed(t353, t383), ::overact::math::signed(t295 - t95, t389),
-                -::overact::math::signed(t324 + t95, t396),
-                -::overact::math::signed(t353 + t95, t403),
+                -(t293 * rate_dot_2_leg1), -(t322 * minus_rate_dot_2_leg2), t351 * rate_dot_2_leg3,
+                t293 * t186, t313 + t322 * t223, -(t351 * t260),
+                -::overact::math::signed(t293, t372), ::overact::math::signed(t322 - 1.0, t376),
+                ::overact::math::signed(t351, t381), ::overact::math::signed(t293 - t95, t387),
+                -::overact::math::signed(t322 + t95, t394),
+                -::overact::math::signed(t351 + t95, t401),
             ],
             [
-                t97 * acceleration[2], t138 * t107 - t140 * t117 + t97 * t122,
-                t138 * t117 + t140 * t107 - t97 * t150,
+                t97 * acceleration[2], t138 * t107 + t140 * t117 + t97 * t122,
+                t140 * t107 - t138 * t117 - t97 * t150,
                 -(t138 * acceleration[0] + t140 * acceleration[1]), 0.0, 0.0, rate_dot_1_leg3, 0.0,
                 0.0, rate_1_leg3, 0.0, 0.0, ::overact::math::sign(rate_1_leg3), 0.0, 0.0, 1.0,
-                t301 * rate_dot_2_leg1, -(t330 * minus_rate_dot_2_leg2), t359 * rate_dot_2_leg3,
-                -(t301 * t188), t330 * t225, -(t344 + t359 * t262),
-                ::overact::math::signed(t301, t374), ::overact::math::signed(t330, t378),
-                ::overact::math::signed(t359 - 1.0, t383),
-                ::overact::math::signed(t97 - t301, t389),
-                ::overact::math::signed(t97 - t330, t396),
-                ::overact::math::signed(t97 - t359, t403),
+                t299 * rate_dot_2_leg1, -(t328 * minus_rate_dot_2_leg2), t357 * rate_dot_2_leg3,
+                -(t299 * t186), t328 * t223, -(t342 + t357 * t260),
+                ::overact::math::signed(t299, t372), ::overact::math::signed(t328, t376),
+                ::overact::math::signed(t357 - 1.0, t381),
+                ::overact::math::signed(t97 - t299, t387),
+                ::overact::math::signed(t97 - t328, t394),
+                ::overact::math::signed(t97 - t357, t401),
             ],
         ])
     }
@@ -3796,7 +3794,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 542 operations (211 additions, 321 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 517 intermediates.
+    /// 536 operations (209 additions, 317 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 511 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3808,256 +3806,256 @@ impl Planar3Rrr {
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t26 = t17 * t23 - 0.5 * t14;
-        let t27 = t14 + t26;
-        let t31 = 0.5 * t17 + t14 * t23;
-        let t32 = t17 - t31;
-        let t34 = 4.330127018922193 * t27 + 2.5 * t32;
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = t34 * t36;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t41 = 0.1 * minus_c123_leg2;
-        let t43 = pose[0] + t41 - 0.3031088913245535;
+        let t5 = 0.1 * minus_c123_leg2;
+        let t6 = 0.1 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t48 = 0.1 * minus_s123_leg2;
-        let t50 = pose[1] + t48 + 0.175;
-        let t52 = 0.8660254037844386 * t43 - 0.5 * t50;
-        let t56 = 0.5 * t43 + 0.8660254037844386 * t50;
-        let t59 = t52 * t52 + t56 * t56;
-        let t61 = 0.04 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t52 + t56 * t62;
-        let t65 = t52 - t64;
-        let t69 = 0.5 * t56 - t52 * t62;
-        let t70 = t56 - t69;
-        let t72 = 2.5 * t65 - 4.330127018922193 * t70;
-        let t73 = t59 * t62;
-        ::overact::guard::leg(t73, 0.03903123748998999, "leg3")?;
-        let t74 = 0.2 / t73;
-        let minus_g1_vy_leg3 = t72 * t74;
-        let t79 = 4.330127018922193 * t32 - 2.5 * t27;
-        let minus_g1_vy_leg2 = t79 * t36;
-        let t83 = 4.330127018922193 * t65 + 2.5 * t70;
-        let g1_vx_leg3 = t83 * t74;
-        let t87 = 0.1 * c_phi;
-        let t89 = pose[1] + t87 - 0.35;
-        let t91 = 0.1 * s_phi;
-        let t92 = pose[0] - t91;
-        let t95 = t89 * t89 + t92 * t92;
-        let t97 = 0.04 / t95 - 0.25;
-        ::overact::guard::reach(t97, "leg1")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let t100 = 0.5 * t89 - t92 * t98;
-        let t101 = t89 - t100;
-        let t102 = t95 * t98;
-        ::overact::guard::leg(t102, 0.03903123748998999, "leg1")?;
-        let t103 = 1.0 / t102;
-        let g1_vy_leg1 = t101 * t103;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let t111 = 0.5 * t92 + t89 * t98;
-        let t112 = t111 - t92;
-        let minus_g1_vx_leg1 = t112 * t103;
-        let g1_wz_leg1 = t87 * minus_g1_vx_leg1 - t91 * g1_vy_leg1;
-        let t118 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t122 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let minus_g1_wz_leg3 = t41 * minus_g1_vy_leg3 + t48 * g1_vx_leg3;
-        let t130 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t132 = g1_vx_leg3 * t118 - minus_g1_vy_leg3 * t122 - minus_g1_wz_leg3 * t130;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t133;
-        let t144 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t14 = 0.1 * minus_s123_leg2;
+        let t15 = 0.1 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t26 = t20 * t20 + t23 * t23;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t23 * t29 - 0.5 * t20;
+        let t33 = t20 + t32;
+        let t37 = 0.5 * t23 + t20 * t29;
+        let t38 = t23 - t37;
+        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
+        let t41 = t26 * t29;
+        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
+        let t42 = 0.2 / t41;
+        let g1_vx_leg2 = t40 * t42;
+        let t45 = pose[0] + t5 - 0.3031088913245535;
+        let t48 = pose[1] + t14 + 0.175;
+        let t50 = 0.8660254037844386 * t45 - 0.5 * t48;
+        let t54 = 0.5 * t45 + 0.8660254037844386 * t48;
+        let t57 = t50 * t50 + t54 * t54;
+        let t59 = 0.04 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.5 * t50 + t54 * t60;
+        let t63 = t50 - t62;
+        let t67 = 0.5 * t54 - t50 * t60;
+        let t68 = t54 - t67;
+        let t70 = 2.5 * t63 - 4.330127018922193 * t68;
+        let t71 = t57 * t60;
+        ::overact::guard::leg(t71, 0.03903123748998999, "leg3")?;
+        let t72 = 0.2 / t71;
+        let minus_g1_vy_leg3 = t70 * t72;
+        let t77 = 4.330127018922193 * t38 - 2.5 * t33;
+        let minus_g1_vy_leg2 = t77 * t42;
+        let t81 = 4.330127018922193 * t63 + 2.5 * t68;
+        let g1_vx_leg3 = t81 * t72;
+        let t86 = pose[1] + t15 - 0.35;
+        let t88 = pose[0] - t6;
+        let t91 = t86 * t86 + t88 * t88;
+        let t93 = 0.04 / t91 - 0.25;
+        ::overact::guard::reach(t93, "leg1")?;
+        let t94 = ::overact::math::sqrt(t93);
+        let t96 = 0.5 * t86 - t88 * t94;
+        let t97 = t86 - t96;
+        let t98 = t91 * t94;
+        ::overact::guard::leg(t98, 0.03903123748998999, "leg1")?;
+        let t99 = 1.0 / t98;
+        let g1_vy_leg1 = t97 * t99;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let t107 = 0.5 * t88 + t86 * t94;
+        let t108 = t107 - t88;
+        let minus_g1_vx_leg1 = t108 * t99;
+        let g1_wz_leg1 = t15 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
+        let t114 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t118 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let minus_g1_wz_leg3 = t5 * minus_g1_vy_leg3 + t14 * g1_vx_leg3;
+        let t126 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t128 = g1_vx_leg3 * t114 - minus_g1_vy_leg3 * t118 - minus_g1_wz_leg3 * t126;
+        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t129;
+        let t140 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t149 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t145 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t149, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t149, 39.38461538461539, "actuators")?;
-        let t150 = 1.0 / t149;
-        let t151 = t144 * t150;
-        let t163 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t145, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t145, 39.38461538461539, "actuators")?;
+        let t146 = 1.0 / t145;
+        let t147 = t140 * t146;
+        let t159 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t165 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t163 * t151;
-        let t171 = t163 * t150;
-        let t173 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t163 * t171;
-        ::overact::guard::platform(t173, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t173, 39.384615384615394, "actuators")?;
+        let t161 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t159 * t147;
+        let t167 = t159 * t146;
+        let t169 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t159 * t167;
+        ::overact::guard::platform(t169, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t169, 39.384615384615394, "actuators")?;
+        let t170 = 1.0 / t169;
+        let t171 = t161 * t170;
+        let t173 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t140 * t147 - t161 * t171;
+        ::overact::guard::platform(t173, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t173, 0.4800000000000003, "actuators")?;
         let t174 = 1.0 / t173;
-        let t175 = t165 * t174;
-        let t177 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t144 * t151 - t165 * t175;
-        ::overact::guard::platform(t177, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t177, 0.4800000000000003, "actuators")?;
-        let t178 = 1.0 / t177;
-        let minus_g2_vx_leg1 = t111 * t103;
-        let t184 = g1_vx_leg2 * actuator_velocities[1]
+        let minus_g2_vx_leg1 = t107 * t99;
+        let t180 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t192 = g1_vy_leg1 * actuator_velocities[0]
+        let t188 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t184 * t171;
-        let rate_3_leg1 = t178
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t180 * t167;
+        let rate_3_leg1 = t174
             * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t184 * t151 - t175 * t192);
-        let t205 = t174 * t192 - t175 * rate_3_leg1;
-        let t209 = t184 * t150 + t171 * t205 - t151 * rate_3_leg1;
-        let t210 = t87 * rate_3_leg1;
-        let minus_g2_vy_leg1 = t100 * t103;
-        let t214 = t91 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t209 - t210)
-            + minus_g2_vy_leg1 * (t205 - t214);
-        let t218 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t219 = 0.04 * t218;
-        let t220 = rate_3_leg1 * t214;
-        let t222 = rate_3_leg1 * t210;
-        let t226 = actuator_velocities[0] * actuator_velocities[0];
-        let t228 = 0.5 * (t95 - 0.08);
-        let rate_dot_1_leg1 = t103 * (t219 - (t112 * t220 + t101 * t222) + t226 * t228);
-        let t232 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t234 = t4 * rate_3_leg1;
-        let t235 = rate_3_leg1 * t234;
-        let t237 = t10 * rate_3_leg1;
-        let t238 = rate_3_leg1 * t237;
-        let t243 = 4.330127018922193 * t31 + 2.5 * t26;
-        let g2_vy_leg2 = t243 * t36;
-        let t249 = 2.5 * t31 - 4.330127018922193 * t26;
-        let minus_g2_vx_leg2 = t249 * t36;
-        let rate_2_leg2 = g2_vy_leg2 * (t205 + t234) - minus_g2_vx_leg2 * (t209 + t237);
-        let t254 = rate_2_leg2 * rate_2_leg2;
-        let t255 = 0.2 * t254;
-        let t257 = actuator_velocities[1] * actuator_velocities[1];
-        let t259 = 2.5 * (t20 - 0.08);
-        let minus_rate_dot_1_leg2 = t36 * (t34 * t235 + t79 * t238 - t255 - t257 * t259);
-        let t263 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t266 = t48 * rate_3_leg1;
-        let t267 = rate_3_leg1 * t266;
-        let t269 = t41 * rate_3_leg1;
-        let t270 = rate_3_leg1 * t269;
-        let t275 = 2.5 * t64 - 4.330127018922193 * t69;
-        let g2_vy_leg3 = t275 * t74;
-        let t281 = 4.330127018922193 * t64 + 2.5 * t69;
-        let minus_g2_vx_leg3 = t281 * t74;
-        let rate_2_leg3 = g2_vy_leg3 * (t205 + t269) - minus_g2_vx_leg3 * (t209 - t266);
-        let t286 = rate_2_leg3 * rate_2_leg3;
-        let t287 = 0.2 * t286;
-        let t289 = actuator_velocities[2] * actuator_velocities[2];
-        let t291 = 2.5 * (t59 - 0.08);
-        let rate_dot_1_leg3 = t74 * (t72 * t267 - t83 * t270 + t287 + t289 * t291);
-        let t295 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t302 = g1_vx_leg2 * t263 - minus_g1_vx_leg1 * t232 + g1_vx_leg3 * t295;
-        let t311 = g1_vy_leg1 * t232 - minus_g1_vy_leg2 * t263 - minus_g1_vy_leg3 * t295
-            + t171 * t302;
-        let rate_dot_3_leg1 = t178
-            * (g1_wz_leg1 * t232 + g1_wz_leg2 * t263 - minus_g1_wz_leg3 * t295
-                - t151 * t302 - t175 * t311);
-        let t319 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t133;
-        let t321 = t130 * t133;
-        let t326 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t133;
-        let t327 = t87 * rate_dot_3_leg1;
-        let t329 = 10.0 * (t327 - t220);
-        let t334 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t133;
-        let t335 = t91 * rate_dot_3_leg1;
-        let t337 = 10.0 * (t222 + t335);
-        let t342 = t174 * t311 - t175 * rate_dot_3_leg1;
-        let t348 = t150 * t302 + t171 * t342 - t151 * rate_dot_3_leg1;
-        let t350 = c_phi * t342 - s_phi * t348;
+                - minus_g1_wz_leg3 * actuator_velocities[2] - t180 * t147 - t171 * t188);
+        let t201 = t170 * t188 - t171 * rate_3_leg1;
+        let t205 = t180 * t146 + t167 * t201 - t147 * rate_3_leg1;
+        let t206 = t15 * rate_3_leg1;
+        let minus_g2_vy_leg1 = t96 * t99;
+        let t210 = t6 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t205 - t206)
+            + minus_g2_vy_leg1 * (t201 - t210);
+        let t214 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t215 = 0.04 * t214;
+        let t216 = rate_3_leg1 * t210;
+        let t218 = rate_3_leg1 * t206;
+        let t222 = actuator_velocities[0] * actuator_velocities[0];
+        let t224 = 0.5 * (t91 - 0.08);
+        let rate_dot_1_leg1 = t99 * (t215 - (t108 * t216 + t97 * t218) + t222 * t224);
+        let t228 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t230 = t7 * rate_3_leg1;
+        let t231 = rate_3_leg1 * t230;
+        let t233 = t16 * rate_3_leg1;
+        let t234 = rate_3_leg1 * t233;
+        let t239 = 4.330127018922193 * t37 + 2.5 * t32;
+        let g2_vy_leg2 = t239 * t42;
+        let t245 = 2.5 * t37 - 4.330127018922193 * t32;
+        let minus_g2_vx_leg2 = t245 * t42;
+        let rate_2_leg2 = g2_vy_leg2 * (t201 + t230) - minus_g2_vx_leg2 * (t205 + t233);
+        let t250 = rate_2_leg2 * rate_2_leg2;
+        let t251 = 0.2 * t250;
+        let t253 = actuator_velocities[1] * actuator_velocities[1];
+        let t255 = 2.5 * (t26 - 0.08);
+        let minus_rate_dot_1_leg2 = t42 * (t40 * t231 + t77 * t234 - t251 - t253 * t255);
+        let t259 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t262 = t14 * rate_3_leg1;
+        let t263 = rate_3_leg1 * t262;
+        let t265 = t5 * rate_3_leg1;
+        let t266 = rate_3_leg1 * t265;
+        let t271 = 2.5 * t62 - 4.330127018922193 * t67;
+        let g2_vy_leg3 = t271 * t72;
+        let t277 = 4.330127018922193 * t62 + 2.5 * t67;
+        let minus_g2_vx_leg3 = t277 * t72;
+        let rate_2_leg3 = g2_vy_leg3 * (t201 + t265) - minus_g2_vx_leg3 * (t205 - t262);
+        let t282 = rate_2_leg3 * rate_2_leg3;
+        let t283 = 0.2 * t282;
+        let t285 = actuator_velocities[2] * actuator_velocities[2];
+        let t287 = 2.5 * (t57 - 0.08);
+        let rate_dot_1_leg3 = t72 * (t70 * t263 - t81 * t266 + t283 + t285 * t287);
+        let t291 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t298 = g1_vx_leg2 * t259 - minus_g1_vx_leg1 * t228 + g1_vx_leg3 * t291;
+        let t307 = g1_vy_leg1 * t228 - minus_g1_vy_leg2 * t259 - minus_g1_vy_leg3 * t291
+            + t167 * t298;
+        let rate_dot_3_leg1 = t174
+            * (g1_wz_leg1 * t228 + g1_wz_leg2 * t259 - minus_g1_wz_leg3 * t291
+                - t147 * t298 - t171 * t307);
+        let t315 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t129;
+        let t317 = t126 * t129;
+        let t322 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t129;
+        let t324 = t218 + t6 * rate_dot_3_leg1;
+        let t325 = 10.0 * t324;
+        let t330 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t129;
+        let t332 = t216 - t15 * rate_dot_3_leg1;
+        let t333 = 10.0 * t332;
+        let t338 = t170 * t307 - t171 * rate_dot_3_leg1;
+        let t344 = t146 * t298 + t167 * t338 - t147 * rate_dot_3_leg1;
+        let t346 = c_phi * t338 - s_phi * t344;
+        let t352 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t129;
         let t357 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t133;
-        let t362 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t133;
-        let t366 = t122 * t133;
-        let t368 = t118 * t133;
-        let t375 = c_phi * t348 + s_phi * t342;
-        let g2_wz_leg1 = t91 * minus_g2_vy_leg1 + t87 * minus_g2_vx_leg1;
-        let t410 = minus_g2_vx_leg1 * t334 + minus_g2_vy_leg1 * t326 + g2_wz_leg1 * t134;
-        let t412 = t348 - t327 + t220;
-        let t415 = t342 - t335 - t222;
-        let t419 = t111 * t412 + t100 * t415 + 0.04 * t226;
-        let minus_rate_dot_2_leg1 = t103 * (t419 + t218 * t228);
-        let t428 = minus_g2_vy_leg1 * t362 - minus_g2_vx_leg1 * t357 + g2_wz_leg1 * t319;
-        let t434 = g2_wz_leg1 * t321
-            - (minus_g2_vx_leg1 * t368 + minus_g2_vy_leg1 * t366);
-        let g2_wz_leg2 = t4 * g2_vy_leg2 - t10 * minus_g2_vx_leg2;
-        let t443 = g2_vy_leg2 * t326 - minus_g2_vx_leg2 * t334 - g2_wz_leg2 * t134;
-        let t446 = t348 + t10 * rate_dot_3_leg1 - t235;
-        let t450 = t342 + t4 * rate_dot_3_leg1 + t238;
-        let t454 = t249 * t446 - t243 * t450 + 0.2 * t257;
-        let minus_rate_dot_2_leg2 = t36 * (t454 + t254 * t259);
-        let t463 = g2_wz_leg2 * t319 - (minus_g2_vx_leg2 * t357 + g2_vy_leg2 * t362);
-        let t469 = g2_vy_leg2 * t366 - minus_g2_vx_leg2 * t368 + g2_wz_leg2 * t321;
-        let g2_wz_leg3 = t41 * g2_vy_leg3 + t48 * minus_g2_vx_leg3;
-        let t478 = g2_vy_leg3 * t326 - minus_g2_vx_leg3 * t334 - g2_wz_leg3 * t134;
-        let t481 = t342 + t41 * rate_dot_3_leg1 - t267;
-        let t485 = t348 - t48 * rate_dot_3_leg1 - t270;
-        let t489 = t275 * t481 - t281 * t485 - 0.2 * t289;
-        let rate_dot_2_leg3 = t74 * (t489 - t286 * t291);
-        let t498 = g2_wz_leg3 * t319 - (minus_g2_vx_leg3 * t357 + g2_vy_leg3 * t362);
-        let t504 = g2_vy_leg3 * t366 - minus_g2_vx_leg3 * t368 + g2_wz_leg3 * t321;
-        let t511 = 5.0 * (t101 * t415 - t112 * t412 + t219);
-        let t519 = t79 * t450 - t34 * t446 - t255;
-        let t527 = t83 * t485 - t72 * t481 + t287;
-        let t533 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t537 = rate_2_leg2 - actuator_velocities[1];
-        let t542 = rate_2_leg3 - actuator_velocities[2];
-        let t548 = minus_rate_2_leg1 + rate_3_leg1;
-        let t555 = rate_3_leg1 - rate_2_leg2;
-        let t562 = rate_3_leg1 - rate_2_leg3;
+            * t129;
+        let t363 = t114 * t129;
+        let t365 = t118 * t129;
+        let t374 = s_phi * t338 + c_phi * t344;
+        let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t15 * minus_g2_vx_leg1;
+        let t406 = minus_g2_vx_leg1 * t322 + minus_g2_vy_leg1 * t330 + g2_wz_leg1 * t130;
+        let t407 = t332 + t344;
+        let t409 = t338 - t324;
+        let t413 = t107 * t407 + t96 * t409 + 0.04 * t222;
+        let minus_rate_dot_2_leg1 = t99 * (t413 + t214 * t224);
+        let t422 = minus_g2_vy_leg1 * t352 - minus_g2_vx_leg1 * t357 + g2_wz_leg1 * t315;
+        let t428 = g2_wz_leg1 * t317
+            - (minus_g2_vx_leg1 * t363 + minus_g2_vy_leg1 * t365);
+        let g2_wz_leg2 = t7 * g2_vy_leg2 - t16 * minus_g2_vx_leg2;
+        let t437 = g2_vy_leg2 * t330 - minus_g2_vx_leg2 * t322 - g2_wz_leg2 * t130;
+        let t440 = t344 + t16 * rate_dot_3_leg1 - t231;
+        let t444 = t338 + t7 * rate_dot_3_leg1 + t234;
+        let t448 = t245 * t440 - t239 * t444 + 0.2 * t253;
+        let minus_rate_dot_2_leg2 = t42 * (t448 + t250 * t255);
+        let t457 = g2_wz_leg2 * t315 - (minus_g2_vx_leg2 * t357 + g2_vy_leg2 * t352);
+        let t463 = g2_vy_leg2 * t365 - minus_g2_vx_leg2 * t363 + g2_wz_leg2 * t317;
+        let g2_wz_leg3 = t5 * g2_vy_leg3 + t14 * minus_g2_vx_leg3;
+        let t472 = g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t322 - g2_wz_leg3 * t130;
+        let t475 = t338 + t5 * rate_dot_3_leg1 - t263;
+        let t479 = t344 - t14 * rate_dot_3_leg1 - t266;
+        let t483 = t271 * t475 - t277 * t479 - 0.2 * t285;
+        let rate_dot_2_leg3 = t72 * (t483 - t282 * t287);
+        let t492 = g2_wz_leg3 * t315 - (minus_g2_vx_leg3 * t357 + g2_vy_leg3 * t352);
+        let t498 = g2_vy_leg3 * t365 - minus_g2_vx_leg3 * t363 + g2_wz_leg3 * t317;
+        let t505 = 5.0 * (t97 * t409 - t108 * t407 + t215);
+        let t513 = t77 * t444 - t40 * t440 - t251;
+        let t521 = t81 * t479 - t70 * t475 + t283;
+        let t527 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t531 = rate_2_leg2 - actuator_velocities[1];
+        let t536 = rate_2_leg3 - actuator_velocities[2];
+        let t542 = minus_rate_2_leg1 + rate_3_leg1;
+        let t549 = rate_3_leg1 - rate_2_leg2;
+        let t556 = rate_3_leg1 - rate_2_leg3;
         Ok([
             [
-                -(t134 * rate_dot_3_leg1), t326 * t329 - t334 * t337 - t134 * t350,
-                t134 * t375 - (t334 * t329 + t326 * t337), t334 * t348 + t326 * t342,
+                -(t130 * rate_dot_3_leg1), -(t322 * t325 + t330 * t333 + t130 * t346),
+                t322 * t333 - t330 * t325 + t130 * t374, t322 * t344 + t330 * t338,
                 actuator_accelerations[0], 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t410 * minus_rate_dot_2_leg1, -(t443 * minus_rate_dot_2_leg2),
-                t478 * rate_dot_2_leg3, 5.0 * t419 + t410 * t511, t443 * t519, -(t478 * t527),
-                ::overact::math::signed(1.0 + t410, t533), ::overact::math::signed(t443, t537),
-                ::overact::math::signed(t478, t542), ::overact::math::signed(t410 - t134, t548),
-                -::overact::math::signed(t443 + t134, t555),
-                -::overact::math::signed(t478 + t134, t562),
+                t406 * minus_rate_dot_2_leg1, -(t437 * minus_rate_dot_2_leg2),
+                t472 * rate_dot_2_leg3, 5.0 * t413 + t406 * t505, t437 * t513, -(t472 * t521),
+                ::overact::math::signed(1.0 + t406, t527), ::overact::math::signed(t437, t531),
+                ::overact::math::signed(t472, t536), ::overact::math::signed(t406 - t130, t542),
+                -::overact::math::signed(t437 + t130, t549),
+                -::overact::math::signed(t472 + t130, t556),
             ],
             [
-                t319 * rate_dot_3_leg1, t319 * t350 - (t357 * t337 + t362 * t329),
-                t362 * t337 - t357 * t329 - t319 * t375, t357 * t348 - t362 * t342, 0.0,
+                t315 * rate_dot_3_leg1, t352 * t333 - t357 * t325 + t315 * t346,
+                t357 * t333 + t352 * t325 - t315 * t374, t357 * t344 - t352 * t338, 0.0,
                 actuator_accelerations[1], 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                -(t428 * minus_rate_dot_2_leg1), -(t463 * minus_rate_dot_2_leg2),
-                t498 * rate_dot_2_leg3, -(t428 * t511), t454 + t463 * t519, -(t498 * t527),
-                -::overact::math::signed(t428, t533), ::overact::math::signed(t463 - 1.0, t537),
-                ::overact::math::signed(t498, t542), ::overact::math::signed(t319 - t428, t548),
-                ::overact::math::signed(t319 - t463, t555),
-                ::overact::math::signed(t319 - t498, t562),
+                -(t422 * minus_rate_dot_2_leg1), -(t457 * minus_rate_dot_2_leg2),
+                t492 * rate_dot_2_leg3, -(t422 * t505), t448 + t457 * t513, -(t492 * t521),
+                -::overact::math::signed(t422, t527), ::overact::math::signed(t457 - 1.0, t531),
+                ::overact::math::signed(t492, t536), ::overact::math::signed(t315 - t422, t542),
+                ::overact::math::signed(t315 - t457, t549),
+                ::overact::math::signed(t315 - t492, t556),
             ],
             [
-                t321 * rate_dot_3_leg1, t366 * t329 - t368 * t337 + t321 * t350,
-                -(t368 * t329 + t366 * t337 + t321 * t375), t368 * t348 + t366 * t342, 0.0, 0.0,
+                t317 * rate_dot_3_leg1, t317 * t346 - (t363 * t325 + t365 * t333),
+                t363 * t333 - t365 * t325 - t317 * t374, t363 * t344 + t365 * t338, 0.0, 0.0,
                 actuator_accelerations[2], 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0,
-                -(t434 * minus_rate_dot_2_leg1), -(t469 * minus_rate_dot_2_leg2),
-                t504 * rate_dot_2_leg3, -(t434 * t511), t469 * t519, -(t489 + t504 * t527),
-                -::overact::math::signed(t434, t533), ::overact::math::signed(t469, t537),
-                ::overact::math::signed(t504 - 1.0, t542),
-                ::overact::math::signed(t321 - t434, t548),
-                ::overact::math::signed(t321 - t469, t555),
-                ::overact::math::signed(t321 - t504, t562),
+                -(t428 * minus_rate_dot_2_leg1), -(t463 * minus_rate_dot_2_leg2),
+                t498 * rate_dot_2_leg3, -(t428 * t505), t463 * t513, -(t483 + t498 * t521),
+                -::overact::math::signed(t428, t527), ::overact::math::signed(t463, t531),
+                ::overact::math::signed(t498 - 1.0, t536),
+                ::overact::math::signed(t317 - t428, t542),
+                ::overact::math::signed(t317 - t463, t549),
+                ::overact::math::signed(t317 - t498, t556),
             ],
         ])
     }
@@ -4082,12 +4080,12 @@ impl Planar3Rrr {
         let t2 = 0.1 * c_phi;
         let t5 = 0.1 * s_phi;
         let t8 = 10.0 * (twist[2] * (t2 * twist[2]) + t5 * acceleration[2]);
-        let t13 = 10.0 * (t2 * acceleration[2] - twist[2] * (t5 * twist[2]));
+        let t13 = 10.0 * (twist[2] * (t5 * twist[2]) - t2 * acceleration[2]);
         [
-            [0.0, -t8, -t13, acceleration[0]], [0.0, t13, -t8, acceleration[1]],
+            [0.0, -t8, t13, acceleration[0]], [0.0, -t13, -t8, acceleration[1]],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ]
     }
@@ -4114,12 +4112,12 @@ impl Planar3Rrr {
         let t2 = 0.1 * c_phi;
         let t5 = 0.1 * s_phi;
         let t8 = 10.0 * (twist[2] * (t2 * twist[2]) + t5 * acceleration[2]);
-        let t13 = 10.0 * (t2 * acceleration[2] - twist[2] * (t5 * twist[2]));
+        let t13 = 10.0 * (twist[2] * (t5 * twist[2]) - t2 * acceleration[2]);
         [
-            [0.0, -t8, -t13, acceleration[0]], [0.0, t13, -t8, acceleration[1]],
+            [0.0, -t8, t13, acceleration[0]], [0.0, -t13, -t8, acceleration[1]],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ]
     }
@@ -4134,7 +4132,7 @@ impl Planar3Rrr {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 311 operations (116 additions, 186 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 309 intermediates.
+    /// 307 operations (116 additions, 182 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 305 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4164,134 +4162,134 @@ impl Planar3Rrr {
         let t24 = t7 - t23;
         let g1_vy_leg1 = t24 * t18;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t3 * g1_vy_leg1;
-        let t31 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t34 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t36 = pose[0] + t34 + 0.3031088913245535;
-        let t39 = pose[1] - t31 + 0.175;
-        let t41 = 0.8660254037844386 * t36 + 0.5 * t39;
-        let t44 = 0.5 * t36 - 0.8660254037844386 * t39;
-        let t47 = t41 * t41 + t44 * t44;
-        let t49 = 0.04 / t47 - 0.25;
-        ::overact::guard::reach(t49, "leg2")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let t53 = t44 * t50 - 0.5 * t41;
-        let t54 = t41 + t53;
-        let t58 = 0.5 * t44 + t41 * t50;
-        let t59 = t44 - t58;
-        let t61 = 4.330127018922193 * t54 + 2.5 * t59;
-        let t62 = t47 * t50;
-        ::overact::guard::leg(t62, 0.03903123748998999, "leg2")?;
-        let t63 = 0.2 / t62;
-        let g1_vx_leg2 = t61 * t63;
-        let t68 = 4.330127018922193 * t59 - 2.5 * t54;
-        let minus_g1_vy_leg2 = t68 * t63;
-        let g1_wz_leg2 = t31 * g1_vx_leg2 - t34 * minus_g1_vy_leg2;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t77 = 0.1 * minus_c123_leg2;
-        let t79 = pose[0] + t77 - 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t84 = 0.1 * minus_s123_leg2;
-        let t86 = pose[1] + t84 + 0.175;
-        let t88 = 0.8660254037844386 * t79 - 0.5 * t86;
-        let t92 = 0.5 * t79 + 0.8660254037844386 * t86;
-        let t95 = t88 * t88 + t92 * t92;
-        let t97 = 0.04 / t95 - 0.25;
-        ::overact::guard::reach(t97, "leg3")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let t100 = 0.5 * t88 + t92 * t98;
-        let t101 = t88 - t100;
-        let t105 = 0.5 * t92 - t88 * t98;
-        let t106 = t92 - t105;
-        let t108 = 2.5 * t101 - 4.330127018922193 * t106;
-        let t109 = t95 * t98;
-        ::overact::guard::leg(t109, 0.03903123748998999, "leg3")?;
-        let t110 = 0.2 / t109;
-        let minus_g1_vy_leg3 = t108 * t110;
-        let t115 = 4.330127018922193 * t101 + 2.5 * t106;
-        let g1_vx_leg3 = t115 * t110;
-        let minus_g1_wz_leg3 = t77 * minus_g1_vy_leg3 + t84 * g1_vx_leg3;
-        let t125 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t32 = 0.1 * minus_s123_leg2;
+        let t33 = t2 + t32;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t37 = 0.1 * minus_c123_leg2;
+        let t38 = t3 - t37;
+        let t40 = pose[0] + t38 + 0.3031088913245535;
+        let t43 = pose[1] - t33 + 0.175;
+        let t45 = 0.8660254037844386 * t40 + 0.5 * t43;
+        let t48 = 0.5 * t40 - 0.8660254037844386 * t43;
+        let t51 = t45 * t45 + t48 * t48;
+        let t53 = 0.04 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t57 = t48 * t54 - 0.5 * t45;
+        let t58 = t45 + t57;
+        let t62 = 0.5 * t48 + t45 * t54;
+        let t63 = t48 - t62;
+        let t65 = 4.330127018922193 * t58 + 2.5 * t63;
+        let t66 = t51 * t54;
+        ::overact::guard::leg(t66, 0.03903123748998999, "leg2")?;
+        let t67 = 0.2 / t66;
+        let g1_vx_leg2 = t65 * t67;
+        let t72 = 4.330127018922193 * t63 - 2.5 * t58;
+        let minus_g1_vy_leg2 = t72 * t67;
+        let g1_wz_leg2 = t33 * g1_vx_leg2 - t38 * minus_g1_vy_leg2;
+        let t79 = pose[0] + t37 - 0.3031088913245535;
+        let t82 = pose[1] + t32 + 0.175;
+        let t84 = 0.8660254037844386 * t79 - 0.5 * t82;
+        let t88 = 0.5 * t79 + 0.8660254037844386 * t82;
+        let t91 = t84 * t84 + t88 * t88;
+        let t93 = 0.04 / t91 - 0.25;
+        ::overact::guard::reach(t93, "leg3")?;
+        let t94 = ::overact::math::sqrt(t93);
+        let t96 = 0.5 * t84 + t88 * t94;
+        let t97 = t84 - t96;
+        let t101 = 0.5 * t88 - t84 * t94;
+        let t102 = t88 - t101;
+        let t104 = 2.5 * t97 - 4.330127018922193 * t102;
+        let t105 = t91 * t94;
+        ::overact::guard::leg(t105, 0.03903123748998999, "leg3")?;
+        let t106 = 0.2 / t105;
+        let minus_g1_vy_leg3 = t104 * t106;
+        let t111 = 4.330127018922193 * t97 + 2.5 * t102;
+        let g1_vx_leg3 = t111 * t106;
+        let minus_g1_wz_leg3 = t37 * minus_g1_vy_leg3 + t32 * g1_vx_leg3;
+        let t121 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t130 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t126 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t130, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t130, 39.38461538461539, "actuators")?;
-        let t131 = 1.0 / t130;
-        let t132 = t125 * t131;
-        let t144 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t126, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t126, 39.38461538461539, "actuators")?;
+        let t127 = 1.0 / t126;
+        let t128 = t121 * t127;
+        let t140 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t144 * t132;
-        let t152 = t144 * t131;
-        let t154 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t144 * t152;
-        ::overact::guard::platform(t154, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t154, 39.384615384615394, "actuators")?;
+        let t142 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t140 * t128;
+        let t148 = t140 * t127;
+        let t150 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t140 * t148;
+        ::overact::guard::platform(t150, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t150, 39.384615384615394, "actuators")?;
+        let t151 = 1.0 / t150;
+        let t152 = t142 * t151;
+        let t154 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t121 * t128 - t142 * t152;
+        ::overact::guard::platform(t154, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t154, 0.4800000000000003, "actuators")?;
         let t155 = 1.0 / t154;
-        let t156 = t146 * t155;
-        let t158 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t125 * t132 - t146 * t156;
-        ::overact::guard::platform(t158, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t158, 0.4800000000000003, "actuators")?;
-        let t159 = 1.0 / t158;
         let minus_g2_vx_leg1 = t15 * t18;
-        let t165 = g1_vx_leg2 * actuator_velocities[1]
+        let t161 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t173 = g1_vy_leg1 * actuator_velocities[0]
+        let t169 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t165 * t152;
-        let rate_3_leg1 = t159
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t161 * t148;
+        let rate_3_leg1 = t155
             * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t165 * t132 - t156 * t173);
-        let t186 = t155 * t173 - t156 * rate_3_leg1;
-        let t190 = t165 * t131 + t152 * t186 - t132 * rate_3_leg1;
-        let t191 = t2 * rate_3_leg1;
+                - minus_g1_wz_leg3 * actuator_velocities[2] - t161 * t128 - t152 * t169);
+        let t182 = t151 * t169 - t152 * rate_3_leg1;
+        let t186 = t161 * t127 + t148 * t182 - t128 * rate_3_leg1;
+        let t187 = t2 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
-        let t195 = t3 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t190 - t191)
-            + minus_g2_vy_leg1 * (t186 - t195);
-        let t201 = rate_3_leg1 * t195;
-        let t203 = rate_3_leg1 * t191;
-        let t211 = 0.04 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-            - (t16 * t201 + t24 * t203)
+        let t191 = t3 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t186 - t187)
+            + minus_g2_vy_leg1 * (t182 - t191);
+        let t197 = rate_3_leg1 * t191;
+        let t199 = rate_3_leg1 * t187;
+        let t207 = 0.04 * (minus_rate_2_leg1 * minus_rate_2_leg1)
+            - (t16 * t197 + t24 * t199)
             + actuator_velocities[0] * actuator_velocities[0] * (0.5 * (t10 - 0.08));
-        let rate_dot_1_leg1 = t18 * t211;
-        let t213 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t215 = t34 * rate_3_leg1;
-        let t218 = t31 * rate_3_leg1;
-        let g2_vy_leg2 = (4.330127018922193 * t58 + 2.5 * t53) * t63;
-        let minus_g2_vx_leg2 = (2.5 * t58 - 4.330127018922193 * t53) * t63;
-        let rate_2_leg2 = g2_vy_leg2 * (t186 + t215) - minus_g2_vx_leg2 * (t190 + t218);
-        let t242 = t61 * (rate_3_leg1 * t215) + t68 * (rate_3_leg1 * t218)
+        let rate_dot_1_leg1 = t18 * t207;
+        let t209 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t211 = t38 * rate_3_leg1;
+        let t214 = t33 * rate_3_leg1;
+        let g2_vy_leg2 = (4.330127018922193 * t62 + 2.5 * t57) * t67;
+        let minus_g2_vx_leg2 = (2.5 * t62 - 4.330127018922193 * t57) * t67;
+        let rate_2_leg2 = g2_vy_leg2 * (t182 + t211) - minus_g2_vx_leg2 * (t186 + t214);
+        let t238 = t65 * (rate_3_leg1 * t211) + t72 * (rate_3_leg1 * t214)
             - 0.2 * (rate_2_leg2 * rate_2_leg2)
-            - actuator_velocities[1] * actuator_velocities[1] * (2.5 * (t47 - 0.08));
-        let minus_rate_dot_1_leg2 = t63 * t242;
-        let t244 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t247 = t84 * rate_3_leg1;
-        let t250 = t77 * rate_3_leg1;
-        let g2_vy_leg3 = (2.5 * t100 - 4.330127018922193 * t105) * t110;
-        let minus_g2_vx_leg3 = (4.330127018922193 * t100 + 2.5 * t105) * t110;
-        let rate_2_leg3 = g2_vy_leg3 * (t186 + t250) - minus_g2_vx_leg3 * (t190 - t247);
-        let t274 = t108 * (rate_3_leg1 * t247) - t115 * (rate_3_leg1 * t250)
+            - actuator_velocities[1] * actuator_velocities[1] * (2.5 * (t51 - 0.08));
+        let minus_rate_dot_1_leg2 = t67 * t238;
+        let t240 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t243 = t32 * rate_3_leg1;
+        let t246 = t37 * rate_3_leg1;
+        let g2_vy_leg3 = (2.5 * t96 - 4.330127018922193 * t101) * t106;
+        let minus_g2_vx_leg3 = (4.330127018922193 * t96 + 2.5 * t101) * t106;
+        let rate_2_leg3 = g2_vy_leg3 * (t182 + t246) - minus_g2_vx_leg3 * (t186 - t243);
+        let t270 = t104 * (rate_3_leg1 * t243) - t111 * (rate_3_leg1 * t246)
             + 0.2 * (rate_2_leg3 * rate_2_leg3)
-            + actuator_velocities[2] * actuator_velocities[2] * (2.5 * (t95 - 0.08));
-        let rate_dot_1_leg3 = t110 * t274;
-        let t276 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t283 = g1_vx_leg2 * t244 - minus_g1_vx_leg1 * t213 + g1_vx_leg3 * t276;
-        let t292 = g1_vy_leg1 * t213 - minus_g1_vy_leg2 * t244 - minus_g1_vy_leg3 * t276
-            + t152 * t283;
-        let rate_dot_3_leg1 = t159
-            * (g1_wz_leg1 * t213 + g1_wz_leg2 * t244 - minus_g1_wz_leg3 * t276
-                - t132 * t283 - t156 * t292);
-        let t298 = 10.0 * (t203 + t3 * rate_dot_3_leg1);
-        let t301 = 10.0 * (t2 * rate_dot_3_leg1 - t201);
-        let t304 = t155 * t292 - t156 * rate_dot_3_leg1;
-        let t310 = t131 * t283 + t152 * t304 - t132 * rate_dot_3_leg1;
+            + actuator_velocities[2] * actuator_velocities[2] * (2.5 * (t91 - 0.08));
+        let rate_dot_1_leg3 = t106 * t270;
+        let t272 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t279 = g1_vx_leg2 * t240 - minus_g1_vx_leg1 * t209 + g1_vx_leg3 * t272;
+        let t288 = g1_vy_leg1 * t209 - minus_g1_vy_leg2 * t240 - minus_g1_vy_leg3 * t272
+            + t148 * t279;
+        let rate_dot_3_leg1 = t155
+            * (g1_wz_leg1 * t209 + g1_wz_leg2 * t240 - minus_g1_wz_leg3 * t272
+                - t128 * t279 - t152 * t288);
+        let t294 = 10.0 * (t199 + t3 * rate_dot_3_leg1);
+        let t297 = 10.0 * (t197 - t2 * rate_dot_3_leg1);
+        let t300 = t151 * t288 - t152 * rate_dot_3_leg1;
+        let t306 = t127 * t279 + t148 * t300 - t128 * rate_dot_3_leg1;
         Ok([
-            [0.0, -t298, -t301, t310], [0.0, t301, -t298, t304],
+            [0.0, -t294, t297, t306], [0.0, -t297, -t294, t300],
             [
-                rate_dot_3_leg1, c_phi * t304 - s_phi * t310, -(c_phi * t310 + s_phi * t304), 0.0,
+                rate_dot_3_leg1, c_phi * t300 - s_phi * t306, -(s_phi * t300 + c_phi * t306), 0.0,
             ],
         ])
     }
@@ -4305,7 +4303,7 @@ impl Planar3Rrr {
     /// Output: 3 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 211 operations (74 additions, 130 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 204 intermediates.
+    /// 201 operations (68 additions, 126 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 194 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4315,99 +4313,99 @@ impl Planar3Rrr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t27 = t14 + t17 * t23 - 0.5 * t14;
-        let t32 = t17 - (0.5 * t17 + t14 * t23);
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = (4.330127018922193 * t27 + 2.5 * t32) * t36;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t41 = 0.1 * minus_c123_leg2;
-        let t43 = pose[0] + t41 - 0.3031088913245535;
+        let t5 = 0.1 * minus_c123_leg2;
+        let t6 = 0.1 * s_phi;
+        let t7 = t6 - t5;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t48 = 0.1 * minus_s123_leg2;
-        let t50 = pose[1] + t48 + 0.175;
-        let t52 = 0.8660254037844386 * t43 - 0.5 * t50;
-        let t56 = 0.5 * t43 + 0.8660254037844386 * t50;
-        let t59 = t52 * t52 + t56 * t56;
-        let t61 = 0.04 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t65 = t52 - (0.5 * t52 + t56 * t62);
-        let t70 = t56 - (0.5 * t56 - t52 * t62);
-        let t73 = t59 * t62;
-        ::overact::guard::leg(t73, 0.03903123748998999, "leg3")?;
-        let t74 = 0.2 / t73;
-        let minus_g1_vy_leg3 = (2.5 * t65 - 4.330127018922193 * t70) * t74;
-        let minus_g1_vy_leg2 = (4.330127018922193 * t32 - 2.5 * t27) * t36;
-        let g1_vx_leg3 = (4.330127018922193 * t65 + 2.5 * t70) * t74;
-        let t87 = 0.1 * c_phi;
-        let t89 = pose[1] + t87 - 0.35;
-        let t91 = 0.1 * s_phi;
-        let t92 = pose[0] - t91;
-        let t95 = t89 * t89 + t92 * t92;
-        let t97 = 0.04 / t95 - 0.25;
-        ::overact::guard::reach(t97, "leg1")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let t102 = t95 * t98;
-        ::overact::guard::leg(t102, 0.03903123748998999, "leg1")?;
-        let t103 = 1.0 / t102;
-        let g1_vy_leg1 = (t89 - (0.5 * t89 - t92 * t98)) * t103;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let minus_g1_vx_leg1 = (0.5 * t92 + t89 * t98 - t92) * t103;
-        let g1_wz_leg1 = t87 * minus_g1_vx_leg1 - t91 * g1_vy_leg1;
-        let t118 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t122 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let minus_g1_wz_leg3 = t41 * minus_g1_vy_leg3 + t48 * g1_vx_leg3;
-        let t130 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t132 = g1_vx_leg3 * t118 - minus_g1_vy_leg3 * t122 - minus_g1_wz_leg3 * t130;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t133;
-        let t139 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t133;
-        let t141 = t130 * t133;
-        let t146 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t133;
-        let t151 = 10.0 * (t87 * acceleration[2] - twist[2] * (t91 * twist[2]));
-        let t156 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t133;
-        let t161 = 10.0 * (twist[2] * (t87 * twist[2]) + t91 * acceleration[2]);
-        let t166 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t173 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t133;
-        let t178 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t133;
-        let t182 = t122 * t133;
-        let t184 = t118 * t133;
-        let t191 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t14 = 0.1 * minus_s123_leg2;
+        let t15 = 0.1 * c_phi;
+        let t16 = t14 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t23 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t26 = t23 * t23 + t20 * t20;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t20 * t29 + 0.5 * t23;
+        let t36 = 0.5 * t20 - t23 * t29;
+        let t39 = t26 * t29;
+        ::overact::guard::leg(t39, 0.03903123748998999, "leg2")?;
+        let t40 = 0.2 / t39;
+        let g1_vx_leg2 = (4.330127018922193 * t32 + 2.5 * t36) * t40;
+        let t43 = pose[0] + t5 - 0.3031088913245535;
+        let t46 = pose[1] + t14 + 0.175;
+        let t48 = 0.8660254037844386 * t43 - 0.5 * t46;
+        let t52 = 0.5 * t43 + 0.8660254037844386 * t46;
+        let t55 = t48 * t48 + t52 * t52;
+        let t57 = 0.04 / t55 - 0.25;
+        ::overact::guard::reach(t57, "leg3")?;
+        let t58 = ::overact::math::sqrt(t57);
+        let t60 = 0.5 * t48 - t52 * t58;
+        let t64 = 0.5 * t52 + t48 * t58;
+        let t67 = t55 * t58;
+        ::overact::guard::leg(t67, 0.03903123748998999, "leg3")?;
+        let t68 = 0.2 / t67;
+        let minus_g1_vy_leg3 = (2.5 * t60 - 4.330127018922193 * t64) * t68;
+        let minus_g1_vy_leg2 = (4.330127018922193 * t36 - 2.5 * t32) * t40;
+        let g1_vx_leg3 = (4.330127018922193 * t60 + 2.5 * t64) * t68;
+        let t82 = pose[1] + t15 - 0.35;
+        let t84 = pose[0] - t6;
+        let t87 = t82 * t82 + t84 * t84;
+        let t89 = 0.04 / t87 - 0.25;
+        ::overact::guard::reach(t89, "leg1")?;
+        let t90 = ::overact::math::sqrt(t89);
+        let t93 = t87 * t90;
+        ::overact::guard::leg(t93, 0.03903123748998999, "leg1")?;
+        let t94 = 1.0 / t93;
+        let g1_vy_leg1 = (0.5 * t82 + t84 * t90) * t94;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let minus_g1_vx_leg1 = (t82 * t90 - 0.5 * t84) * t94;
+        let g1_wz_leg1 = t15 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
+        let t108 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t112 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let minus_g1_wz_leg3 = t5 * minus_g1_vy_leg3 + t14 * g1_vx_leg3;
+        let t120 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t122 = g1_vx_leg3 * t108 - minus_g1_vy_leg3 * t112 - minus_g1_wz_leg3 * t120;
+        ::overact::guard::platform(t122, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t122, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t122, 27.286461953085094, "kept actuators")?;
+        let t123 = 1.0 / t122;
+        let t124 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t123;
+        let t129 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t123;
+        let t131 = t120 * t123;
+        let t136 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t123;
+        let t141 = 10.0 * (twist[2] * (t15 * twist[2]) + t6 * acceleration[2]);
+        let t146 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t123;
+        let t151 = 10.0 * (twist[2] * (t6 * twist[2]) - t15 * acceleration[2]);
+        let t156 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t162 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t123;
+        let t167 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
+            * t123;
+        let t173 = t108 * t123;
+        let t175 = t112 * t123;
+        let t184 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
-                -(t134 * acceleration[2]), t146 * t151 - t156 * t161 - t134 * t166,
-                t134 * t191 - (t156 * t151 + t146 * t161),
-                t156 * acceleration[0] + t146 * acceleration[1],
+                -(t124 * acceleration[2]), -(t136 * t141 + t146 * t151 + t124 * t156),
+                t136 * t151 - t146 * t141 + t124 * t184,
+                t136 * acceleration[0] + t146 * acceleration[1],
             ],
             [
-                t139 * acceleration[2], t139 * t166 - (t173 * t161 + t178 * t151),
-                t178 * t161 - t173 * t151 - t139 * t191,
-                t173 * acceleration[0] - t178 * acceleration[1],
+                t129 * acceleration[2], t162 * t151 - t167 * t141 + t129 * t156,
+                t167 * t151 + t162 * t141 - t129 * t184,
+                t167 * acceleration[0] - t162 * acceleration[1],
             ],
             [
-                t141 * acceleration[2], t182 * t151 - t184 * t161 + t141 * t166,
-                -(t184 * t151 + t182 * t161 + t141 * t191),
-                t184 * acceleration[0] + t182 * acceleration[1],
+                t131 * acceleration[2], t131 * t156 - (t173 * t141 + t175 * t151),
+                t173 * t151 - t175 * t141 - t131 * t184,
+                t173 * acceleration[0] + t175 * acceleration[1],
             ],
         ])
     }
@@ -4419,7 +4417,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 126 operations (50 additions, 70 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 128 intermediates.
+    /// 116 operations (44 additions, 66 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 118 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4428,58 +4426,58 @@ impl Planar3Rrr {
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t27 = t14 + t17 * t23 - 0.5 * t14;
-        let t32 = t17 - (0.5 * t17 + t14 * t23);
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = (4.330127018922193 * t27 + 2.5 * t32) * t36;
-        let t39 = 0.1 * s_phi;
-        let t40 = pose[0] - t39;
-        let t42 = 0.1 * c_phi;
-        let t44 = pose[1] + t42 - 0.35;
-        let t47 = t44 * t44 + t40 * t40;
-        let t49 = 0.04 / t47 - 0.25;
-        ::overact::guard::reach(t49, "leg1")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let t54 = t47 * t50;
-        ::overact::guard::leg(t54, 0.03903123748998999, "leg1")?;
-        let t55 = 1.0 / t54;
-        let minus_g1_vx_leg1 = (0.5 * t40 + t44 * t50 - t40) * t55;
+        let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t62 = 0.1 * minus_c123_leg2;
-        let t64 = pose[0] + t62 - 0.3031088913245535;
+        let t6 = 0.1 * minus_c123_leg2;
+        let t7 = t2 - t6;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t11 = 0.1 * c_phi;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t69 = 0.1 * minus_s123_leg2;
-        let t71 = pose[1] + t69 + 0.175;
-        let t73 = 0.8660254037844386 * t64 - 0.5 * t71;
-        let t77 = 0.5 * t64 + 0.8660254037844386 * t71;
-        let t80 = t73 * t73 + t77 * t77;
-        let t82 = 0.04 / t80 - 0.25;
-        ::overact::guard::reach(t82, "leg3")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t86 = t73 - (0.5 * t73 + t77 * t83);
-        let t91 = t77 - (0.5 * t77 - t73 * t83);
-        let t94 = t80 * t83;
-        ::overact::guard::leg(t94, 0.03903123748998999, "leg3")?;
-        let t95 = 0.2 / t94;
-        let g1_vx_leg3 = (4.330127018922193 * t86 + 2.5 * t91) * t95;
-        let g1_vy_leg1 = (t44 - (0.5 * t44 - t40 * t50)) * t55;
-        let minus_g1_vy_leg2 = (4.330127018922193 * t32 - 2.5 * t27) * t36;
-        let minus_g1_vy_leg3 = (2.5 * t86 - 4.330127018922193 * t91) * t95;
-        let g1_wz_leg1 = t42 * minus_g1_vx_leg1 - t39 * g1_vy_leg1;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t62 * minus_g1_vy_leg3 + t69 * g1_vx_leg3;
+        let t15 = 0.1 * minus_s123_leg2;
+        let t16 = t11 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t23 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t26 = t23 * t23 + t20 * t20;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t20 * t29 + 0.5 * t23;
+        let t36 = 0.5 * t20 - t23 * t29;
+        let t39 = t26 * t29;
+        ::overact::guard::leg(t39, 0.03903123748998999, "leg2")?;
+        let t40 = 0.2 / t39;
+        let g1_vx_leg2 = (4.330127018922193 * t32 + 2.5 * t36) * t40;
+        let t43 = pose[0] - t2;
+        let t46 = pose[1] + t11 - 0.35;
+        let t49 = t46 * t46 + t43 * t43;
+        let t51 = 0.04 / t49 - 0.25;
+        ::overact::guard::reach(t51, "leg1")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t55 = t49 * t52;
+        ::overact::guard::leg(t55, 0.03903123748998999, "leg1")?;
+        let t56 = 1.0 / t55;
+        let minus_g1_vx_leg1 = (t46 * t52 - 0.5 * t43) * t56;
+        let t61 = pose[0] + t6 - 0.3031088913245535;
+        let t64 = pose[1] + t15 + 0.175;
+        let t66 = 0.8660254037844386 * t61 - 0.5 * t64;
+        let t70 = 0.5 * t61 + 0.8660254037844386 * t64;
+        let t73 = t66 * t66 + t70 * t70;
+        let t75 = 0.04 / t73 - 0.25;
+        ::overact::guard::reach(t75, "leg3")?;
+        let t76 = ::overact::math::sqrt(t75);
+        let t78 = 0.5 * t66 - t70 * t76;
+        let t82 = 0.5 * t70 + t66 * t76;
+        let t85 = t73 * t76;
+        ::overact::guard::leg(t85, 0.03903123748998999, "leg3")?;
+        let t86 = 0.2 / t85;
+        let g1_vx_leg3 = (4.330127018922193 * t78 + 2.5 * t82) * t86;
+        let g1_vy_leg1 = (0.5 * t46 + t43 * t52) * t56;
+        let minus_g1_vy_leg2 = (4.330127018922193 * t36 - 2.5 * t32) * t40;
+        let minus_g1_vy_leg3 = (2.5 * t78 - 4.330127018922193 * t82) * t86;
+        let g1_wz_leg1 = t11 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t6 * minus_g1_vy_leg3 + t15 * g1_vx_leg3;
         Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
                 + g1_vx_leg3 * torques[2],
@@ -4512,7 +4510,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 523 operations (218 additions, 296 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 534 intermediates.
+    /// 508 operations (216 additions, 283 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 519 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4537,215 +4535,219 @@ impl Planar3Rrr {
         ::overact::guard::leg(t17, 0.03903123748998999, "leg1")?;
         let t18 = 1.0 / t17;
         let g1_vy_leg1 = t16 * t18;
-        let t23 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t25 = pose[0] + t23 + 0.3031088913245535;
-        let t29 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t31 = pose[1] - t29 + 0.175;
-        let t33 = 0.5 * t25 - 0.8660254037844386 * t31;
-        let t37 = 0.8660254037844386 * t25 + 0.5 * t31;
-        let t40 = t37 * t37 + t33 * t33;
-        let t42 = 0.04 / t40 - 0.25;
-        ::overact::guard::reach(t42, "leg2")?;
-        let t43 = ::overact::math::sqrt(t42);
-        let t45 = 0.5 * t33 + t37 * t43;
-        let t46 = t33 - t45;
-        let t50 = t33 * t43 - 0.5 * t37;
-        let t51 = t37 + t50;
-        let t53 = 4.330127018922193 * t46 - 2.5 * t51;
-        let t54 = t40 * t43;
-        ::overact::guard::leg(t54, 0.03903123748998999, "leg2")?;
-        let t55 = 0.2 / t54;
-        let minus_g1_vy_leg2 = t53 * t55;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t62 = 0.1 * minus_c123_leg2;
-        let t64 = pose[0] + t62 - 0.3031088913245535;
+        let t24 = 0.1 * minus_c123_leg2;
+        let t25 = t6 - t24;
+        let t27 = pose[0] + t25 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t69 = 0.1 * minus_s123_leg2;
-        let t71 = pose[1] + t69 + 0.175;
-        let t73 = 0.8660254037844386 * t64 - 0.5 * t71;
-        let t77 = 0.5 * t64 + 0.8660254037844386 * t71;
-        let t80 = t73 * t73 + t77 * t77;
-        let t82 = 0.04 / t80 - 0.25;
-        ::overact::guard::reach(t82, "leg3")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t85 = 0.5 * t73 + t77 * t83;
-        let t86 = t73 - t85;
-        let t90 = 0.5 * t77 - t73 * t83;
-        let t91 = t77 - t90;
-        let t93 = 2.5 * t86 - 4.330127018922193 * t91;
-        let t94 = t80 * t83;
-        ::overact::guard::leg(t94, 0.03903123748998999, "leg3")?;
-        let t95 = 0.2 / t94;
-        let minus_g1_vy_leg3 = t93 * t95;
-        let t101 = 0.5 * t7 + t4 * t13;
-        let t102 = t101 - t7;
-        let minus_g1_vx_leg1 = t102 * t18;
-        let t107 = 4.330127018922193 * t51 + 2.5 * t46;
-        let g1_vx_leg2 = t107 * t55;
-        let t113 = 4.330127018922193 * t86 + 2.5 * t91;
-        let g1_vx_leg3 = t113 * t95;
-        let t116 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t32 = 0.1 * minus_s123_leg2;
+        let t33 = t2 + t32;
+        let t35 = pose[1] - t33 + 0.175;
+        let t37 = 0.5 * t27 - 0.8660254037844386 * t35;
+        let t41 = 0.8660254037844386 * t27 + 0.5 * t35;
+        let t44 = t41 * t41 + t37 * t37;
+        let t46 = 0.04 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg2")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t49 = 0.5 * t37 + t41 * t47;
+        let t50 = t37 - t49;
+        let t54 = t37 * t47 - 0.5 * t41;
+        let t55 = t41 + t54;
+        let t57 = 4.330127018922193 * t50 - 2.5 * t55;
+        let t58 = t44 * t47;
+        ::overact::guard::leg(t58, 0.03903123748998999, "leg2")?;
+        let t59 = 0.2 / t58;
+        let minus_g1_vy_leg2 = t57 * t59;
+        let t64 = pose[0] + t24 - 0.3031088913245535;
+        let t67 = pose[1] + t32 + 0.175;
+        let t69 = 0.8660254037844386 * t64 - 0.5 * t67;
+        let t73 = 0.5 * t64 + 0.8660254037844386 * t67;
+        let t76 = t69 * t69 + t73 * t73;
+        let t78 = 0.04 / t76 - 0.25;
+        ::overact::guard::reach(t78, "leg3")?;
+        let t79 = ::overact::math::sqrt(t78);
+        let t81 = 0.5 * t69 + t73 * t79;
+        let t82 = t69 - t81;
+        let t86 = 0.5 * t73 - t69 * t79;
+        let t87 = t73 - t86;
+        let t89 = 2.5 * t82 - 4.330127018922193 * t87;
+        let t90 = t76 * t79;
+        ::overact::guard::leg(t90, 0.03903123748998999, "leg3")?;
+        let t91 = 0.2 / t90;
+        let minus_g1_vy_leg3 = t89 * t91;
+        let t97 = 0.5 * t7 + t4 * t13;
+        let t98 = t97 - t7;
+        let minus_g1_vx_leg1 = t98 * t18;
+        let t103 = 4.330127018922193 * t55 + 2.5 * t50;
+        let g1_vx_leg2 = t103 * t59;
+        let t109 = 4.330127018922193 * t82 + 2.5 * t87;
+        let g1_vx_leg3 = t109 * t91;
+        let t112 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t121 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t117 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t117, 39.38461538461539, "actuators")?;
+        let t118 = 1.0 / t117;
+        let t119 = t112 * t118;
+        let t121 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t112 * t119;
+        ::overact::guard::platform(t121, 39.384615384615394, "actuators")?;
         let t122 = 1.0 / t121;
-        let t123 = t116 * t122;
-        let t125 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t116 * t123;
-        ::overact::guard::platform(t125, 39.384615384615394, "actuators")?;
-        let t126 = 1.0 / t125;
-        let t129 = t2 * twist[2];
-        let t131 = acceleration[1] - t6 * acceleration[2] - twist[2] * t129;
-        let t135 = t6 * twist[2];
-        let t137 = acceleration[0] - t2 * acceleration[2] + twist[2] * t135;
-        let minus_g2_vx_leg1 = t101 * t18;
-        let t141 = twist[0] - t129;
+        let t123 = t2 * twist[2];
+        let t126 = twist[2] * t123 + t6 * acceleration[2];
+        let t127 = acceleration[1] - t126;
+        let t129 = t6 * twist[2];
+        let t132 = twist[2] * t129 - t2 * acceleration[2];
+        let t133 = acceleration[0] + t132;
+        let minus_g2_vx_leg1 = t97 * t18;
+        let t137 = twist[0] - t123;
         let minus_g2_vy_leg1 = t15 * t18;
-        let t144 = twist[1] - t135;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t141 + minus_g2_vy_leg1 * t144;
-        let t147 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t149 = t16 * t131 - t102 * t137 + 0.04 * t147;
-        let rate_1_leg1 = g1_vy_leg1 * t144 - minus_g1_vx_leg1 * t141;
-        let t153 = rate_1_leg1 * rate_1_leg1;
-        let t154 = t10 - 0.08;
-        let t155 = 0.5 * t154;
-        let rate_dot_1_leg1 = t18 * (t149 + t153 * t155);
+        let t140 = twist[1] - t129;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t137 + minus_g2_vy_leg1 * t140;
+        let t143 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t145 = t16 * t127 - t98 * t133 + 0.04 * t143;
+        let rate_1_leg1 = g1_vy_leg1 * t140 - minus_g1_vx_leg1 * t137;
+        let t149 = rate_1_leg1 * rate_1_leg1;
+        let t150 = t10 - 0.08;
+        let t151 = 0.5 * t150;
+        let rate_dot_1_leg1 = t18 * (t145 + t149 * t151);
+        let t163 = 5.0 * t17;
         let minus_rate_dot_2_leg1 = t18
-            * (t101 * t137 + t15 * t131 + 0.04 * t153 + t147 * t155);
-        let t179 = 5.0 * t149;
-        let t188 = 5.0 * (t17 * t153) + 2.5 * (t154 * rate_dot_1_leg1);
-        let t195 = 5.0 * t17
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t147
-                + parameters[8] * t179)
-            + 2.5 * t154
-                * (parameters[8] * t188
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t147));
-        let t198 = ::overact::math::signed(
+            * (t97 * t133 + t15 * t127 + 0.04 * t149 + t143 * t151);
+        let t175 = 5.0 * t145;
+        let t179 = 2.5 * t150;
+        let t182 = t149 * t163 + rate_dot_1_leg1 * t179;
+        let t189 = t163
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t143
+                + parameters[8] * t175)
+            + t179
+                * (parameters[8] * t182
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t143));
+        let t192 = ::overact::math::signed(
             parameters[9],
             rate_1_leg1 + minus_rate_2_leg1,
         );
-        let t199 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t193 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t195
-            + t198;
-        let t208 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
-        let t209 = parameters[6] * t188 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t179 - t198 - t208;
-        let t214 = 4.330127018922193 * t45 + 2.5 * t50;
-        let g2_vy_leg2 = t214 * t55;
-        let t216 = t29 * twist[2];
-        let t217 = twist[0] + t216;
-        let t219 = t23 * twist[2];
-        let t220 = twist[1] + t219;
-        let rate_1_leg2 = g1_vx_leg2 * t217 - minus_g1_vy_leg2 * t220;
-        let t223 = rate_1_leg2 * rate_1_leg2;
-        let t226 = t40 - 0.08;
-        let t230 = acceleration[1] + t23 * acceleration[2] + twist[2] * t216;
-        let t235 = acceleration[0] + t29 * acceleration[2] - twist[2] * t219;
-        let t241 = 2.5 * t45 - 4.330127018922193 * t50;
-        let minus_g2_vx_leg2 = t241 * t55;
-        let rate_2_leg2 = g2_vy_leg2 * t220 - minus_g2_vx_leg2 * t217;
-        let t245 = rate_2_leg2 * rate_2_leg2;
-        let t247 = t53 * t230 - t107 * t235 - 0.2 * t245;
-        let t248 = 2.5 * t226;
-        let minus_rate_dot_1_leg2 = t55 * (t247 - t223 * t248);
-        let t254 = 5.0 * (t54 * t223) - 2.5 * (t226 * minus_rate_dot_1_leg2);
-        let minus_rate_dot_2_leg2 = t55
-            * (t241 * t235 - t214 * t230 + 0.2 * t223 + t245 * t248);
-        let t269 = ::overact::math::signed(parameters[20], rate_2_leg2 - rate_1_leg2);
-        let t272 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t273 = parameters[17] * t254 - parameters[16] * minus_rate_dot_2_leg2
-            + parameters[18] * t247 + t269 - t272;
-        let t296 = 5.0 * t54
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t245
-                - parameters[19] * t247)
-            + t248
-                * (parameters[19] * t254
-                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t245));
-        let t298 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t189
+            + t192;
+        let t202 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
+        let t203 = parameters[6] * t182 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t175 - t192 - t202;
+        let t208 = 4.330127018922193 * t49 + 2.5 * t54;
+        let g2_vy_leg2 = t208 * t59;
+        let t210 = t33 * twist[2];
+        let t211 = twist[0] + t210;
+        let t213 = t25 * twist[2];
+        let t214 = twist[1] + t213;
+        let rate_1_leg2 = g1_vx_leg2 * t211 - minus_g1_vy_leg2 * t214;
+        let t217 = rate_1_leg2 * rate_1_leg2;
+        let t218 = 5.0 * t58;
+        let t221 = 2.5 * (t44 - 0.08);
+        let t225 = acceleration[1] + t25 * acceleration[2] + twist[2] * t210;
+        let t230 = acceleration[0] + t33 * acceleration[2] - twist[2] * t213;
+        let t236 = 2.5 * t49 - 4.330127018922193 * t54;
+        let minus_g2_vx_leg2 = t236 * t59;
+        let rate_2_leg2 = g2_vy_leg2 * t214 - minus_g2_vx_leg2 * t211;
+        let t240 = rate_2_leg2 * rate_2_leg2;
+        let t242 = t57 * t225 - t103 * t230 - 0.2 * t240;
+        let minus_rate_dot_1_leg2 = t59 * (t242 - t217 * t221);
+        let t247 = t217 * t218 - t221 * minus_rate_dot_1_leg2;
+        let minus_rate_dot_2_leg2 = t59
+            * (t236 * t230 - t208 * t225 + 0.2 * t217 + t240 * t221);
+        let t262 = ::overact::math::signed(parameters[20], rate_2_leg2 - rate_1_leg2);
+        let t265 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t266 = parameters[17] * t247 - parameters[16] * minus_rate_dot_2_leg2
+            + parameters[18] * t242 + t262 - t265;
+        let t288 = t218
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t240
+                - parameters[19] * t242)
+            + t221
+                * (parameters[19] * t247
+                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t240));
+        let t290 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[14], rate_1_leg2) + parameters[15]
-            - parameters[11] * minus_rate_dot_1_leg2 + t296 - t269;
-        let t304 = 2.5 * t85 - 4.330127018922193 * t90;
-        let g2_vy_leg3 = t304 * t95;
-        let t308 = t69 * twist[2];
-        let t310 = acceleration[1] + t62 * acceleration[2] - twist[2] * t308;
-        let t314 = 4.330127018922193 * t85 + 2.5 * t90;
-        let t317 = t62 * twist[2];
-        let t319 = acceleration[0] - t69 * acceleration[2] - twist[2] * t317;
-        let t322 = twist[0] - t308;
-        let t324 = twist[1] + t317;
-        let rate_1_leg3 = g1_vx_leg3 * t322 - minus_g1_vy_leg3 * t324;
-        let t327 = rate_1_leg3 * rate_1_leg3;
-        let minus_g2_vx_leg3 = t314 * t95;
-        let rate_2_leg3 = g2_vy_leg3 * t324 - minus_g2_vx_leg3 * t322;
-        let t334 = rate_2_leg3 * rate_2_leg3;
-        let t335 = t80 - 0.08;
-        let t336 = 2.5 * t335;
-        let rate_dot_2_leg3 = t95
-            * (t304 * t310 - t314 * t319 - 0.2 * t327 - t334 * t336);
-        let t347 = t113 * t319 - t93 * t310 + 0.2 * t334;
-        let rate_dot_1_leg3 = t95 * (t347 + t327 * t336);
-        let t353 = 5.0 * (t94 * t327) + 2.5 * (t335 * rate_dot_1_leg3);
-        let t359 = ::overact::math::signed(parameters[31], rate_2_leg3 - rate_1_leg3);
-        let t362 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t363 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t353
-            - parameters[29] * t347 + t359 - t362;
-        let t386 = 5.0 * t94
-            * (parameters[30] * t347
-                - (parameters[28] * t334 + parameters[29] * rate_dot_2_leg3))
-            + t336
-                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t334
-                    + parameters[30] * t353);
-        let t388 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
+            - parameters[11] * minus_rate_dot_1_leg2 + t288 - t262;
+        let t296 = 2.5 * t81 - 4.330127018922193 * t86;
+        let g2_vy_leg3 = t296 * t91;
+        let t300 = t32 * twist[2];
+        let t302 = acceleration[1] + t24 * acceleration[2] - twist[2] * t300;
+        let t306 = 4.330127018922193 * t81 + 2.5 * t86;
+        let t309 = t24 * twist[2];
+        let t311 = acceleration[0] - t32 * acceleration[2] - twist[2] * t309;
+        let t314 = twist[0] - t300;
+        let t316 = twist[1] + t309;
+        let rate_1_leg3 = g1_vx_leg3 * t314 - minus_g1_vy_leg3 * t316;
+        let t319 = rate_1_leg3 * rate_1_leg3;
+        let minus_g2_vx_leg3 = t306 * t91;
+        let rate_2_leg3 = g2_vy_leg3 * t316 - minus_g2_vx_leg3 * t314;
+        let t326 = rate_2_leg3 * rate_2_leg3;
+        let t328 = 2.5 * (t76 - 0.08);
+        let rate_dot_2_leg3 = t91
+            * (t296 * t302 - t306 * t311 - 0.2 * t319 - t326 * t328);
+        let t333 = 5.0 * t90;
+        let t339 = t109 * t311 - t89 * t302 + 0.2 * t326;
+        let rate_dot_1_leg3 = t91 * (t339 + t319 * t328);
+        let t344 = t319 * t333 + t328 * rate_dot_1_leg3;
+        let t350 = ::overact::math::signed(parameters[31], rate_2_leg3 - rate_1_leg3);
+        let t353 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t354 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t344
+            - parameters[29] * t339 + t350 - t353;
+        let t376 = t333
+            * (parameters[30] * t339
+                - (parameters[28] * t326 + parameters[29] * rate_dot_2_leg3))
+            + t328
+                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t326
+                    + parameters[30] * t344);
+        let t378 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
             + parameters[24] * rate_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            + t386 - t359;
-        let t391 = g1_vy_leg1 * t199 - minus_g2_vy_leg1 * t209 + g2_vy_leg2 * t273
-            - minus_g1_vy_leg2 * t298 + g2_vy_leg3 * t363 - minus_g1_vy_leg3 * t388;
-        let t394 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t396 = twist[2] * twist[2];
-        let t406 = parameters[36] * t394
-            - (parameters[34] * t396 + acceleration[2] * parameters[35])
-            - parameters[38] * t396 - acceleration[2] * parameters[39]
-            + parameters[40] * t394;
-        let t413 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t421 = acceleration[2] * parameters[34] - parameters[35] * t396
-            + parameters[36] * t413 + acceleration[2] * parameters[38]
-            - parameters[39] * t396 + parameters[40] * t413;
-        let t435 = g1_vx_leg2 * t298 - minus_g2_vx_leg2 * t273
-            - (minus_g1_vx_leg1 * t199 + minus_g2_vx_leg1 * t209) + g1_vx_leg3 * t388
-            - minus_g2_vx_leg3 * t363;
-        let t439 = t435 + c_phi * t406 - s_phi * t421;
-        let t441 = t391 + s_phi * t406 + c_phi * t421 + t439 * t123;
+            + t376 - t350;
+        let t381 = g1_vy_leg1 * t193 - minus_g2_vy_leg1 * t203 + g2_vy_leg2 * t266
+            - minus_g1_vy_leg2 * t290 + g2_vy_leg3 * t354 - minus_g1_vy_leg3 * t378;
+        let t383 = 10.0 * t132;
+        let t385 = 10.0 * t126;
+        let t394 = acceleration[1] * parameters[36]
+            - (parameters[34] * t383 + parameters[35] * t385) - parameters[38] * t383
+            - parameters[39] * t385 + acceleration[1] * parameters[40];
+        let t406 = g1_vx_leg2 * t290 - minus_g2_vx_leg2 * t266
+            - (minus_g1_vx_leg1 * t193 + minus_g2_vx_leg1 * t203) + g1_vx_leg3 * t378
+            - minus_g2_vx_leg3 * t354;
+        let t417 = parameters[35] * t383 - parameters[34] * t385
+            + acceleration[0] * parameters[36] - parameters[38] * t385
+            + parameters[39] * t383 + acceleration[0] * parameters[40];
+        let t418 = t406 + t417;
+        let t420 = t381 + t394 + t418 * t119;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
-        let g1_wz_leg2 = t29 * g1_vx_leg2 - t23 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t62 * minus_g1_vy_leg3 + t69 * g1_vx_leg3;
-        let t461 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let g1_wz_leg2 = t33 * g1_vx_leg2 - t25 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t24 * minus_g1_vy_leg3 + t32 * g1_vx_leg3;
+        let t440 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t462 = t461 * t122;
-        let t464 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t116 * t462;
-        let t465 = t464 * t126;
-        let t474 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t461 * t462 - t464 * t465;
-        ::overact::guard::platform(t474, 0.4800000000000003, "actuators")?;
+        let t441 = t440 * t118;
+        let t443 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t112 * t441;
+        let t444 = t443 * t122;
         let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let g2_wz_leg2 = t23 * g2_vy_leg2 - t29 * minus_g2_vx_leg2;
-        let g2_wz_leg3 = t62 * g2_vy_leg3 + t69 * minus_g2_vx_leg3;
-        let t497 = g1_wz_leg1 * t199 + g2_wz_leg1 * t209 + t208 + g1_wz_leg2 * t298
-            + g2_wz_leg2 * t273 + t272 + g2_wz_leg3 * t363 - minus_g1_wz_leg3 * t388
-            + t362;
-        let t508 = acceleration[2] * parameters[33] + parameters[34] * t413
-            - parameters[35] * t394 + acceleration[2] * parameters[37]
-            + parameters[38] * t413 - parameters[39] * t394;
-        let t514 = (t497 + t508 - t439 * t462 - t465 * t441) / t474;
-        let t516 = t126 * t441 - t465 * t514;
-        let t522 = t439 * t122 + t123 * t516 - t462 * t514;
+        let g2_wz_leg2 = t25 * g2_vy_leg2 - t33 * minus_g2_vx_leg2;
+        let g2_wz_leg3 = t24 * g2_vy_leg3 + t32 * minus_g2_vx_leg3;
+        let t467 = g1_wz_leg1 * t193 + g2_wz_leg1 * t203 + t202 + g1_wz_leg2 * t290
+            + g2_wz_leg2 * t266 + t265 + g2_wz_leg3 * t354 - minus_g1_wz_leg3 * t378
+            + t353;
+        let t471 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t476 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t484 = acceleration[2] * parameters[33] + parameters[34] * t471
+            - parameters[35] * t476 + acceleration[2] * parameters[37]
+            + parameters[38] * t471 - parameters[39] * t476;
+        let t498 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t440 * t441 - t443 * t444;
+        ::overact::guard::platform(t498, 0.4800000000000003, "actuators")?;
+        let t499 = (t467 + t484 - t418 * t441 - t444 * t420) / t498;
+        let t501 = t122 * t420 - t444 * t499;
+        let t507 = t418 * t118 + t119 * t501 - t441 * t499;
         Ok([
-            g1_vy_leg1 * t516 - minus_g1_vx_leg1 * t522 + g1_wz_leg1 * t514,
-            g1_vx_leg2 * t522 - minus_g1_vy_leg2 * t516 + g1_wz_leg2 * t514,
-            g1_vx_leg3 * t522 - minus_g1_vy_leg3 * t516 - minus_g1_wz_leg3 * t514,
+            g1_vy_leg1 * t501 - minus_g1_vx_leg1 * t507 + g1_wz_leg1 * t499,
+            g1_vx_leg2 * t507 - minus_g1_vy_leg2 * t501 + g1_wz_leg2 * t499,
+            g1_vx_leg3 * t507 - minus_g1_vy_leg3 * t501 - minus_g1_wz_leg3 * t499,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4759,7 +4761,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 462 operations (188 additions, 268 multiplications, 6 divisions), 0 square roots, 7 trigonometric pairs, 9 signs, 482 intermediates.
+    /// 454 operations (186 additions, 262 multiplications, 6 divisions), 0 square roots, 7 trigonometric pairs, 9 signs, 474 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4807,16 +4809,18 @@ impl Planar3Rrr {
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t60 * t67;
         ::overact::guard::platform(t69, 39.38461538461541, "actuators")?;
         let t70 = 1.0 / t69;
-        let t73 = 0.1 * s_phi;
-        let t76 = 0.1 * c_phi;
-        let t77 = t76 * twist[2];
-        let t79 = acceleration[1] - t73 * acceleration[2] - twist[2] * t77;
-        let t83 = t73 * twist[2];
-        let t85 = acceleration[0] - t76 * acceleration[2] + twist[2] * t83;
+        let t73 = 0.1 * c_phi;
+        let t74 = t73 * twist[2];
+        let t76 = 0.1 * s_phi;
+        let t78 = twist[2] * t74 + t76 * acceleration[2];
+        let t79 = acceleration[1] - t78;
+        let t81 = t76 * twist[2];
+        let t84 = twist[2] * t81 - t73 * acceleration[2];
+        let t85 = acceleration[0] + t84;
         let g2_vx_leg1 = s1_leg1 * t10;
-        let t89 = twist[0] - t77;
+        let t89 = twist[0] - t74;
         let minus_g2_vy_leg1 = c1_leg1 * t10;
-        let t92 = twist[1] - t83;
+        let t92 = twist[1] - t81;
         let rate_2_leg1 = g2_vx_leg1 * t89 - minus_g2_vy_leg1 * t92;
         let t95 = rate_2_leg1 * rate_2_leg1;
         let t97 = c12_leg1 * t79 - s12_leg1 * t85 + 0.2 * t95;
@@ -4826,141 +4830,141 @@ impl Planar3Rrr {
         let rate_dot_1_leg1 = t10 * (t97 + t101 * t102);
         let t120 = 0.2 * t101;
         let rate_dot_2_leg1 = t10 * (s1_leg1 * t85 - c1_leg1 * t79 - t120 - t95 * t102);
-        let t135 = s2_leg1 * t120 + c2_leg1 * (0.2 * rate_dot_1_leg1);
-        let t139 = 0.2 * s2_leg1
+        let t134 = s2_leg1 * t120 + t102 * rate_dot_1_leg1;
+        let t138 = 0.2 * s2_leg1
             * (parameters[8] * t97
                 - (parameters[6] * t95 + parameters[7] * rate_dot_2_leg1))
             + t102
                 * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t95
-                    + parameters[8] * t135);
-        let t142 = ::overact::math::signed(parameters[9], rate_2_leg1 - rate_1_leg1);
-        let t143 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                    + parameters[8] * t134);
+        let t141 = ::overact::math::signed(parameters[9], rate_2_leg1 - rate_1_leg1);
+        let t142 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t139
-            - t142;
-        let t152 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t153 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t135
-            - parameters[7] * t97 + t142 - t152;
-        let t158 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t158 * t26;
-        let t160 = 0.08660254037844387 * s_phi;
-        let t161 = 0.05 * c_phi;
-        let t162 = t160 + t161;
-        let t163 = t162 * twist[2];
-        let t164 = twist[0] + t163;
-        let t166 = 0.05 * s_phi;
-        let t167 = 0.08660254037844387 * c_phi;
-        let t168 = t166 - t167;
-        let t169 = t168 * twist[2];
-        let t170 = twist[1] + t169;
-        let rate_1_leg2 = g1_vx_leg2 * t164 - minus_g1_vy_leg2 * t170;
-        let t173 = rate_1_leg2 * rate_1_leg2;
-        let t174 = 0.2 * t173;
-        let t179 = acceleration[1] + t168 * acceleration[2] + twist[2] * t163;
-        let t184 = acceleration[0] + t162 * acceleration[2] - twist[2] * t169;
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t138
+            - t141;
+        let t151 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t152 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t134
+            - parameters[7] * t97 + t141 - t151;
+        let t157 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = t157 * t26;
+        let t159 = 0.08660254037844387 * s_phi;
+        let t160 = 0.05 * c_phi;
+        let t161 = t159 + t160;
+        let t162 = t161 * twist[2];
+        let t163 = twist[0] + t162;
+        let t165 = 0.05 * s_phi;
+        let t166 = 0.08660254037844387 * c_phi;
+        let t167 = t165 - t166;
+        let t168 = t167 * twist[2];
+        let t169 = twist[1] + t168;
+        let rate_1_leg2 = g1_vx_leg2 * t163 - minus_g1_vy_leg2 * t169;
+        let t172 = rate_1_leg2 * rate_1_leg2;
+        let t173 = 0.2 * t172;
+        let t175 = 0.2 * c2_leg2;
+        let t179 = acceleration[1] + t167 * acceleration[2] + twist[2] * t162;
+        let t184 = acceleration[0] + t161 * acceleration[2] - twist[2] * t168;
         let t190 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
         let minus_g2_vx_leg2 = t190 * t26;
-        let rate_2_leg2 = g2_vy_leg2 * t170 - minus_g2_vx_leg2 * t164;
+        let rate_2_leg2 = g2_vy_leg2 * t169 - minus_g2_vx_leg2 * t163;
         let t194 = rate_2_leg2 * rate_2_leg2;
         let t196 = t25 * t179 - t51 * t184 - 0.2 * t194;
-        let t197 = 0.2 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t26 * (t196 - t173 * t197);
-        let t203 = s2_leg2 * t174 - c2_leg2 * (0.2 * minus_rate_dot_1_leg2);
+        let minus_rate_dot_1_leg2 = t26 * (t196 - t172 * t175);
+        let t201 = s2_leg2 * t173 - t175 * minus_rate_dot_1_leg2;
         let minus_rate_dot_2_leg2 = t26
-            * (t190 * t184 - t158 * t179 + t174 + t194 * t197);
-        let t217 = ::overact::math::signed(parameters[20], rate_2_leg2 - rate_1_leg2);
-        let t220 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t221 = parameters[17] * t203 - parameters[16] * minus_rate_dot_2_leg2
-            + parameters[18] * t196 + t217 - t220;
-        let t244 = 0.2 * s2_leg2
+            * (t190 * t184 - t157 * t179 + t173 + t194 * t175);
+        let t215 = ::overact::math::signed(parameters[20], rate_2_leg2 - rate_1_leg2);
+        let t218 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t219 = parameters[17] * t201 - parameters[16] * minus_rate_dot_2_leg2
+            + parameters[18] * t196 + t215 - t218;
+        let t242 = 0.2 * s2_leg2
             * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t194
                 - parameters[19] * t196)
-            + t197
-                * (parameters[19] * t203
+            + t175
+                * (parameters[19] * t201
                     - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t194));
-        let t246 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
+        let t244 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[14], rate_1_leg2) + parameters[15]
-            - parameters[11] * minus_rate_dot_1_leg2 + t244 - t217;
-        let t252 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t252 * t43;
-        let t254 = t167 + t166;
-        let t257 = t160 - t161;
-        let t258 = t257 * twist[2];
-        let t260 = acceleration[1] + t254 * acceleration[2] - twist[2] * t258;
-        let t264 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let t267 = t254 * twist[2];
-        let t269 = acceleration[0] - t257 * acceleration[2] - twist[2] * t267;
-        let t272 = twist[0] - t258;
-        let t274 = twist[1] + t267;
-        let rate_1_leg3 = g1_vx_leg3 * t272 - minus_g1_vy_leg3 * t274;
-        let t277 = rate_1_leg3 * rate_1_leg3;
-        let t278 = 0.2 * t277;
-        let minus_g2_vx_leg3 = t264 * t43;
-        let rate_2_leg3 = g2_vy_leg3 * t274 - minus_g2_vx_leg3 * t272;
-        let t284 = rate_2_leg3 * rate_2_leg3;
-        let t285 = 0.2 * c2_leg3;
-        let rate_dot_2_leg3 = t43 * (t252 * t260 - t264 * t269 - t278 - t284 * t285);
-        let t295 = t57 * t269 - t42 * t260 + 0.2 * t284;
-        let rate_dot_1_leg3 = t43 * (t295 + t277 * t285);
-        let t301 = s2_leg3 * t278 + c2_leg3 * (0.2 * rate_dot_1_leg3);
-        let t307 = ::overact::math::signed(parameters[31], rate_2_leg3 - rate_1_leg3);
-        let t310 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t311 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t301
-            - parameters[29] * t295 + t307 - t310;
-        let t334 = 0.2 * s2_leg3
-            * (parameters[30] * t295
-                - (parameters[28] * t284 + parameters[29] * rate_dot_2_leg3))
-            + t285
-                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t284
-                    + parameters[30] * t301);
-        let t336 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
+            - parameters[11] * minus_rate_dot_1_leg2 + t242 - t215;
+        let t250 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t250 * t43;
+        let t252 = t166 + t165;
+        let t255 = t159 - t160;
+        let t256 = t255 * twist[2];
+        let t258 = acceleration[1] + t252 * acceleration[2] - twist[2] * t256;
+        let t262 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let t265 = t252 * twist[2];
+        let t267 = acceleration[0] - t255 * acceleration[2] - twist[2] * t265;
+        let t270 = twist[0] - t256;
+        let t272 = twist[1] + t265;
+        let rate_1_leg3 = g1_vx_leg3 * t270 - minus_g1_vy_leg3 * t272;
+        let t275 = rate_1_leg3 * rate_1_leg3;
+        let t276 = 0.2 * t275;
+        let minus_g2_vx_leg3 = t262 * t43;
+        let rate_2_leg3 = g2_vy_leg3 * t272 - minus_g2_vx_leg3 * t270;
+        let t282 = rate_2_leg3 * rate_2_leg3;
+        let t283 = 0.2 * c2_leg3;
+        let rate_dot_2_leg3 = t43 * (t250 * t258 - t262 * t267 - t276 - t282 * t283);
+        let t293 = t57 * t267 - t42 * t258 + 0.2 * t282;
+        let rate_dot_1_leg3 = t43 * (t293 + t275 * t283);
+        let t298 = s2_leg3 * t276 + t283 * rate_dot_1_leg3;
+        let t304 = ::overact::math::signed(parameters[31], rate_2_leg3 - rate_1_leg3);
+        let t307 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t308 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t298
+            - parameters[29] * t293 + t304 - t307;
+        let t331 = 0.2 * s2_leg3
+            * (parameters[30] * t293
+                - (parameters[28] * t282 + parameters[29] * rate_dot_2_leg3))
+            + t283
+                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t282
+                    + parameters[30] * t298);
+        let t333 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
             + parameters[24] * rate_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            + t334 - t307;
-        let t339 = g1_vy_leg1 * t143 - minus_g2_vy_leg1 * t153 + g2_vy_leg2 * t221
-            - minus_g1_vy_leg2 * t246 + g2_vy_leg3 * t311 - minus_g1_vy_leg3 * t336;
-        let t342 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t344 = twist[2] * twist[2];
-        let t354 = parameters[36] * t342
-            - (parameters[34] * t344 + acceleration[2] * parameters[35])
-            - parameters[38] * t344 - acceleration[2] * parameters[39]
-            + parameters[40] * t342;
-        let t361 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t369 = acceleration[2] * parameters[34] - parameters[35] * t344
-            + parameters[36] * t361 + acceleration[2] * parameters[38]
-            - parameters[39] * t344 + parameters[40] * t361;
-        let t383 = g2_vx_leg1 * t153 - minus_g1_vx_leg1 * t143 + g1_vx_leg2 * t246
-            - minus_g2_vx_leg2 * t221 + g1_vx_leg3 * t336 - minus_g2_vx_leg3 * t311;
-        let t387 = t383 + c_phi * t354 - s_phi * t369;
-        let t389 = t339 + s_phi * t354 + c_phi * t369 + t387 * t67;
-        let g1_wz_leg1 = minus_g1_vx_leg1 * t76 - g1_vy_leg1 * t73;
-        let g1_wz_leg2 = g1_vx_leg2 * t162 - minus_g1_vy_leg2 * t168;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t254 + g1_vx_leg3 * t257;
-        let t409 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+            + t331 - t304;
+        let t336 = g1_vy_leg1 * t142 - minus_g2_vy_leg1 * t152 + g2_vy_leg2 * t219
+            - minus_g1_vy_leg2 * t244 + g2_vy_leg3 * t308 - minus_g1_vy_leg3 * t333;
+        let t338 = 10.0 * t84;
+        let t340 = 10.0 * t78;
+        let t349 = acceleration[1] * parameters[36]
+            - (parameters[34] * t338 + parameters[35] * t340) - parameters[38] * t338
+            - parameters[39] * t340 + acceleration[1] * parameters[40];
+        let t361 = g2_vx_leg1 * t152 - minus_g1_vx_leg1 * t142 + g1_vx_leg2 * t244
+            - minus_g2_vx_leg2 * t219 + g1_vx_leg3 * t333 - minus_g2_vx_leg3 * t308;
+        let t372 = parameters[35] * t338 - parameters[34] * t340
+            + acceleration[0] * parameters[36] - parameters[38] * t340
+            + parameters[39] * t338 + acceleration[0] * parameters[40];
+        let t373 = t361 + t372;
+        let t375 = t336 + t349 + t373 * t67;
+        let g1_wz_leg1 = minus_g1_vx_leg1 * t73 - g1_vy_leg1 * t76;
+        let g1_wz_leg2 = g1_vx_leg2 * t161 - minus_g1_vy_leg2 * t167;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t252 + g1_vx_leg3 * t255;
+        let t395 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t410 = t409 * t66;
-        let t412 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t60 * t410;
-        let t413 = t412 * t70;
-        let t422 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t409 * t410 - t412 * t413;
-        ::overact::guard::platform(t422, 0.4800000000000014, "actuators")?;
-        let g2_wz_leg1 = minus_g2_vy_leg1 * t73 - g2_vx_leg1 * t76;
-        let g2_wz_leg2 = g2_vy_leg2 * t168 - minus_g2_vx_leg2 * t162;
-        let g2_wz_leg3 = g2_vy_leg3 * t254 + minus_g2_vx_leg3 * t257;
-        let t445 = g1_wz_leg1 * t143 + g2_wz_leg1 * t153 + t152 + g1_wz_leg2 * t246
-            + g2_wz_leg2 * t221 + t220 + g2_wz_leg3 * t311 - minus_g1_wz_leg3 * t336
-            + t310;
-        let t456 = acceleration[2] * parameters[33] + parameters[34] * t361
-            - parameters[35] * t342 + acceleration[2] * parameters[37]
-            + parameters[38] * t361 - parameters[39] * t342;
-        let t462 = (t445 + t456 - t387 * t410 - t413 * t389) / t422;
-        let t464 = t70 * t389 - t413 * t462;
-        let t470 = t387 * t66 + t67 * t464 - t410 * t462;
+        let t396 = t395 * t66;
+        let t398 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t60 * t396;
+        let t399 = t398 * t70;
+        let g2_wz_leg1 = minus_g2_vy_leg1 * t76 - g2_vx_leg1 * t73;
+        let g2_wz_leg2 = g2_vy_leg2 * t167 - minus_g2_vx_leg2 * t161;
+        let g2_wz_leg3 = g2_vy_leg3 * t252 + minus_g2_vx_leg3 * t255;
+        let t422 = g1_wz_leg1 * t142 + g2_wz_leg1 * t152 + t151 + g1_wz_leg2 * t244
+            + g2_wz_leg2 * t219 + t218 + g2_wz_leg3 * t308 - minus_g1_wz_leg3 * t333
+            + t307;
+        let t426 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t431 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t439 = acceleration[2] * parameters[33] + parameters[34] * t426
+            - parameters[35] * t431 + acceleration[2] * parameters[37]
+            + parameters[38] * t426 - parameters[39] * t431;
+        let t453 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t395 * t396 - t398 * t399;
+        ::overact::guard::platform(t453, 0.4800000000000014, "actuators")?;
+        let t454 = (t422 + t439 - t373 * t396 - t399 * t375) / t453;
+        let t456 = t70 * t375 - t399 * t454;
+        let t462 = t373 * t66 + t67 * t456 - t396 * t454;
         Ok([
-            g1_vy_leg1 * t464 - minus_g1_vx_leg1 * t470 + g1_wz_leg1 * t462,
-            g1_vx_leg2 * t470 - minus_g1_vy_leg2 * t464 + g1_wz_leg2 * t462,
-            g1_vx_leg3 * t470 - minus_g1_vy_leg3 * t464 - minus_g1_wz_leg3 * t462,
+            g1_vy_leg1 * t456 - minus_g1_vx_leg1 * t462 + g1_wz_leg1 * t454,
+            g1_vx_leg2 * t462 - minus_g1_vy_leg2 * t456 + g1_wz_leg2 * t454,
+            g1_vx_leg3 * t462 - minus_g1_vy_leg3 * t456 - minus_g1_wz_leg3 * t454,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4974,7 +4978,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 613 operations (256 additions, 348 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 624 intermediates.
+    /// 575 operations (246 additions, 320 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 586 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5001,267 +5005,261 @@ impl Planar3Rrr {
         ::overact::guard::leg(t17, 0.03903123748998999, "leg1")?;
         let t18 = 1.0 / t17;
         let g1_vy_leg1 = t16 * t18;
-        let t23 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t25 = pose[0] + t23 + 0.3031088913245535;
-        let t29 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t31 = pose[1] - t29 + 0.175;
-        let t33 = 0.5 * t25 - 0.8660254037844386 * t31;
-        let t37 = 0.8660254037844386 * t25 + 0.5 * t31;
-        let t40 = t37 * t37 + t33 * t33;
-        let t42 = 0.04 / t40 - 0.25;
-        ::overact::guard::reach(t42, "leg2")?;
-        let t43 = ::overact::math::sqrt(t42);
-        let t45 = 0.5 * t33 + t37 * t43;
-        let t46 = t33 - t45;
-        let t50 = t33 * t43 - 0.5 * t37;
-        let t51 = t37 + t50;
-        let t53 = 4.330127018922193 * t46 - 2.5 * t51;
-        let t54 = t40 * t43;
-        ::overact::guard::leg(t54, 0.03903123748998999, "leg2")?;
-        let t55 = 0.2 / t54;
-        let minus_g1_vy_leg2 = t53 * t55;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t62 = 0.1 * minus_c123_leg2;
-        let t64 = pose[0] + t62 - 0.3031088913245535;
+        let t24 = 0.1 * minus_c123_leg2;
+        let t25 = t6 - t24;
+        let t27 = pose[0] + t25 + 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t69 = 0.1 * minus_s123_leg2;
-        let t71 = pose[1] + t69 + 0.175;
-        let t73 = 0.8660254037844386 * t64 - 0.5 * t71;
-        let t77 = 0.5 * t64 + 0.8660254037844386 * t71;
-        let t80 = t73 * t73 + t77 * t77;
-        let t82 = 0.04 / t80 - 0.25;
-        ::overact::guard::reach(t82, "leg3")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t85 = 0.5 * t73 + t77 * t83;
-        let t86 = t73 - t85;
-        let t90 = 0.5 * t77 - t73 * t83;
-        let t91 = t77 - t90;
-        let t93 = 2.5 * t86 - 4.330127018922193 * t91;
-        let t94 = t80 * t83;
-        ::overact::guard::leg(t94, 0.03903123748998999, "leg3")?;
-        let t95 = 0.2 / t94;
-        let minus_g1_vy_leg3 = t93 * t95;
-        let t101 = 0.5 * t7 + t4 * t13;
-        let t102 = t101 - t7;
-        let minus_g1_vx_leg1 = t102 * t18;
-        let t107 = 4.330127018922193 * t51 + 2.5 * t46;
-        let g1_vx_leg2 = t107 * t55;
-        let t113 = 4.330127018922193 * t86 + 2.5 * t91;
-        let g1_vx_leg3 = t113 * t95;
-        let t116 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t32 = 0.1 * minus_s123_leg2;
+        let t33 = t2 + t32;
+        let t35 = pose[1] - t33 + 0.175;
+        let t37 = 0.5 * t27 - 0.8660254037844386 * t35;
+        let t41 = 0.8660254037844386 * t27 + 0.5 * t35;
+        let t44 = t41 * t41 + t37 * t37;
+        let t46 = 0.04 / t44 - 0.25;
+        ::overact::guard::reach(t46, "leg2")?;
+        let t47 = ::overact::math::sqrt(t46);
+        let t49 = 0.5 * t37 + t41 * t47;
+        let t50 = t37 - t49;
+        let t54 = t37 * t47 - 0.5 * t41;
+        let t55 = t41 + t54;
+        let t57 = 4.330127018922193 * t50 - 2.5 * t55;
+        let t58 = t44 * t47;
+        ::overact::guard::leg(t58, 0.03903123748998999, "leg2")?;
+        let t59 = 0.2 / t58;
+        let minus_g1_vy_leg2 = t57 * t59;
+        let t64 = pose[0] + t24 - 0.3031088913245535;
+        let t67 = pose[1] + t32 + 0.175;
+        let t69 = 0.8660254037844386 * t64 - 0.5 * t67;
+        let t73 = 0.5 * t64 + 0.8660254037844386 * t67;
+        let t76 = t69 * t69 + t73 * t73;
+        let t78 = 0.04 / t76 - 0.25;
+        ::overact::guard::reach(t78, "leg3")?;
+        let t79 = ::overact::math::sqrt(t78);
+        let t81 = 0.5 * t69 + t73 * t79;
+        let t82 = t69 - t81;
+        let t86 = 0.5 * t73 - t69 * t79;
+        let t87 = t73 - t86;
+        let t89 = 2.5 * t82 - 4.330127018922193 * t87;
+        let t90 = t76 * t79;
+        ::overact::guard::leg(t90, 0.03903123748998999, "leg3")?;
+        let t91 = 0.2 / t90;
+        let minus_g1_vy_leg3 = t89 * t91;
+        let t97 = 0.5 * t7 + t4 * t13;
+        let t98 = t97 - t7;
+        let minus_g1_vx_leg1 = t98 * t18;
+        let t103 = 4.330127018922193 * t55 + 2.5 * t50;
+        let g1_vx_leg2 = t103 * t59;
+        let t109 = 4.330127018922193 * t82 + 2.5 * t87;
+        let g1_vx_leg3 = t109 * t91;
+        let t112 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t121 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t117 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t117, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t117, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t117, 39.38461538461539, "actuators")?;
+        let t118 = 1.0 / t117;
+        let t119 = t112 * t118;
+        let t121 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t112 * t119;
+        ::overact::guard::platform(t121, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t121, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t121, 39.384615384615394, "actuators")?;
         let t122 = 1.0 / t121;
-        let t123 = t116 * t122;
-        let t125 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t116 * t123;
-        ::overact::guard::platform(t125, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t125, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t125, 39.384615384615394, "actuators")?;
-        let t126 = 1.0 / t125;
+        let t131 = 5.0 * t17;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
-        let g1_wz_leg2 = t29 * g1_vx_leg2 - t23 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t62 * minus_g1_vy_leg3 + t69 * g1_vx_leg3;
-        let t154 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let g1_wz_leg2 = t33 * g1_vx_leg2 - t25 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t24 * minus_g1_vy_leg3 + t32 * g1_vx_leg3;
+        let t150 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t155 = t154 * t122;
-        let t164 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t116 * t155;
-        let t165 = t164 * t126;
-        let t167 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t154 * t155 - t164 * t165;
-        ::overact::guard::platform(t167, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t167, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t167, 0.4800000000000003, "actuators")?;
-        let t168 = 1.0 / t167;
-        let t178 = g1_vx_leg2 * actuator_velocities[1]
+        let t151 = t150 * t118;
+        let t160 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t112 * t151;
+        let t161 = t160 * t122;
+        let t163 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t150 * t151 - t160 * t161;
+        ::overact::guard::platform(t163, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t163, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t163, 0.4800000000000003, "actuators")?;
+        let t164 = 1.0 / t163;
+        let t174 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t187 = g1_vy_leg1 * actuator_velocities[0]
+        let t183 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t178 * t123;
-        let rate_3_leg1 = t168
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t174 * t119;
+        let rate_3_leg1 = t164
             * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t178 * t155 - t165 * t187);
-        let t191 = t23 * rate_3_leg1;
-        let t192 = rate_3_leg1 * t191;
-        let t194 = t29 * rate_3_leg1;
-        let t195 = rate_3_leg1 * t194;
-        let t200 = 4.330127018922193 * t45 + 2.5 * t50;
-        let g2_vy_leg2 = t200 * t55;
-        let t204 = t126 * t187 - t165 * rate_3_leg1;
-        let t209 = 2.5 * t45 - 4.330127018922193 * t50;
-        let minus_g2_vx_leg2 = t209 * t55;
-        let t215 = t178 * t122 + t123 * t204 - t155 * rate_3_leg1;
-        let rate_2_leg2 = g2_vy_leg2 * (t204 + t191) - minus_g2_vx_leg2 * (t215 + t194);
-        let t219 = rate_2_leg2 * rate_2_leg2;
-        let t220 = 0.2 * t219;
-        let t222 = actuator_velocities[1] * actuator_velocities[1];
-        let t223 = t40 - 0.08;
-        let t224 = 2.5 * t223;
-        let minus_rate_dot_1_leg2 = t55
-            * (t107 * t192 + t53 * t195 - t220 - t222 * t224);
-        let t228 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t101 * t18;
-        let t231 = t2 * rate_3_leg1;
+                - minus_g1_wz_leg3 * actuator_velocities[2] - t174 * t151 - t161 * t183);
+        let t187 = t25 * rate_3_leg1;
+        let t188 = rate_3_leg1 * t187;
+        let t190 = t33 * rate_3_leg1;
+        let t191 = rate_3_leg1 * t190;
+        let t196 = 4.330127018922193 * t49 + 2.5 * t54;
+        let g2_vy_leg2 = t196 * t59;
+        let t200 = t122 * t183 - t161 * rate_3_leg1;
+        let t205 = 2.5 * t49 - 4.330127018922193 * t54;
+        let minus_g2_vx_leg2 = t205 * t59;
+        let t211 = t174 * t118 + t119 * t200 - t151 * rate_3_leg1;
+        let rate_2_leg2 = g2_vy_leg2 * (t200 + t187) - minus_g2_vx_leg2 * (t211 + t190);
+        let t215 = rate_2_leg2 * rate_2_leg2;
+        let t216 = 0.2 * t215;
+        let t218 = actuator_velocities[1] * actuator_velocities[1];
+        let t220 = 2.5 * (t44 - 0.08);
+        let minus_rate_dot_1_leg2 = t59
+            * (t103 * t188 + t57 * t191 - t216 - t218 * t220);
+        let t224 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t97 * t18;
+        let t227 = t2 * rate_3_leg1;
         let minus_g2_vy_leg1 = t15 * t18;
-        let t235 = t6 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t215 - t231)
-            + minus_g2_vy_leg1 * (t204 - t235);
-        let t239 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t240 = 0.04 * t239;
-        let t241 = rate_3_leg1 * t235;
-        let t243 = rate_3_leg1 * t231;
-        let t245 = t102 * t241 + t16 * t243;
-        let t247 = actuator_velocities[0] * actuator_velocities[0];
-        let t248 = t10 - 0.08;
-        let t249 = 0.5 * t248;
-        let rate_dot_1_leg1 = t18 * (t240 - t245 + t247 * t249);
-        let t253 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t256 = t69 * rate_3_leg1;
-        let t257 = rate_3_leg1 * t256;
-        let t259 = t62 * rate_3_leg1;
-        let t260 = rate_3_leg1 * t259;
-        let t265 = 2.5 * t85 - 4.330127018922193 * t90;
-        let g2_vy_leg3 = t265 * t95;
-        let t271 = 4.330127018922193 * t85 + 2.5 * t90;
-        let minus_g2_vx_leg3 = t271 * t95;
-        let rate_2_leg3 = g2_vy_leg3 * (t204 + t259) - minus_g2_vx_leg3 * (t215 - t256);
-        let t276 = rate_2_leg3 * rate_2_leg3;
-        let t277 = 0.2 * t276;
-        let t279 = actuator_velocities[2] * actuator_velocities[2];
-        let t280 = t80 - 0.08;
-        let t281 = 2.5 * t280;
-        let rate_dot_1_leg3 = t95 * (t93 * t257 - t113 * t260 + t277 + t279 * t281);
-        let t285 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t287 = g1_vx_leg2 * t228 - minus_g1_vx_leg1 * t253 + g1_vx_leg3 * t285;
-        let t295 = g1_vy_leg1 * t253 - minus_g1_vy_leg2 * t228 - minus_g1_vy_leg3 * t285
-            + t123 * t287;
-        let rate_dot_3_leg1 = t168
-            * (g1_wz_leg1 * t253 + g1_wz_leg2 * t228 - minus_g1_wz_leg3 * t285
-                - t155 * t287 - t165 * t295);
-        let t308 = t126 * t295 - t165 * rate_dot_3_leg1;
-        let t312 = t122 * t287 + t123 * t308 - t155 * rate_dot_3_leg1;
-        let t315 = t312 - t2 * rate_dot_3_leg1 + t241;
-        let t319 = t308 - t6 * rate_dot_3_leg1 - t243;
-        let t322 = 0.04 * t247;
-        let t324 = t239 * t249;
-        let minus_rate_dot_2_leg1 = t18 * (t101 * t315 + t15 * t319 + t322 + t324);
-        let t334 = 5.0 * (t16 * t319 - t102 * t315 + t240);
-        let t340 = 5.0 * (t17 * t247);
-        let t343 = t340 + 2.5 * (t248 * actuator_accelerations[0]);
-        let t350 = 5.0 * t17
-            * (parameters[7] * minus_rate_dot_2_leg1 - t239 * parameters[6]
-                + parameters[8] * t334)
-            + 2.5 * t248
-                * (parameters[8] * t343
-                    - (parameters[6] * minus_rate_dot_2_leg1 + t239 * parameters[7]));
-        let t353 = ::overact::math::signed(
+        let t231 = t6 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t211 - t227)
+            + minus_g2_vy_leg1 * (t200 - t231);
+        let t235 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t236 = 0.04 * t235;
+        let t237 = rate_3_leg1 * t231;
+        let t239 = rate_3_leg1 * t227;
+        let t243 = actuator_velocities[0] * actuator_velocities[0];
+        let t244 = t10 - 0.08;
+        let t245 = 0.5 * t244;
+        let rate_dot_1_leg1 = t18 * (t236 - (t98 * t237 + t16 * t239) + t243 * t245);
+        let t249 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t252 = t32 * rate_3_leg1;
+        let t253 = rate_3_leg1 * t252;
+        let t255 = t24 * rate_3_leg1;
+        let t256 = rate_3_leg1 * t255;
+        let t261 = 2.5 * t81 - 4.330127018922193 * t86;
+        let g2_vy_leg3 = t261 * t91;
+        let t267 = 4.330127018922193 * t81 + 2.5 * t86;
+        let minus_g2_vx_leg3 = t267 * t91;
+        let rate_2_leg3 = g2_vy_leg3 * (t200 + t255) - minus_g2_vx_leg3 * (t211 - t252);
+        let t272 = rate_2_leg3 * rate_2_leg3;
+        let t273 = 0.2 * t272;
+        let t275 = actuator_velocities[2] * actuator_velocities[2];
+        let t277 = 2.5 * (t76 - 0.08);
+        let rate_dot_1_leg3 = t91 * (t89 * t253 - t109 * t256 + t273 + t275 * t277);
+        let t281 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t283 = g1_vx_leg2 * t224 - minus_g1_vx_leg1 * t249 + g1_vx_leg3 * t281;
+        let t291 = g1_vy_leg1 * t249 - minus_g1_vy_leg2 * t224 - minus_g1_vy_leg3 * t281
+            + t119 * t283;
+        let rate_dot_3_leg1 = t164
+            * (g1_wz_leg1 * t249 + g1_wz_leg2 * t224 - minus_g1_wz_leg3 * t281
+                - t151 * t283 - t161 * t291);
+        let t304 = t122 * t291 - t161 * rate_dot_3_leg1;
+        let t308 = t118 * t283 + t119 * t304 - t151 * rate_dot_3_leg1;
+        let t310 = t237 - t2 * rate_dot_3_leg1;
+        let t311 = t308 + t310;
+        let t314 = t239 + t6 * rate_dot_3_leg1;
+        let t315 = t304 - t314;
+        let minus_rate_dot_2_leg1 = t18
+            * (t97 * t311 + t15 * t315 + 0.04 * t243 + t235 * t245);
+        let t330 = 5.0 * (t16 * t315 - t98 * t311 + t236);
+        let t334 = 2.5 * t244;
+        let t337 = t131 * t243 + actuator_accelerations[0] * t334;
+        let t344 = t131
+            * (parameters[7] * minus_rate_dot_2_leg1 - t235 * parameters[6]
+                + parameters[8] * t330)
+            + t334
+                * (parameters[8] * t337
+                    - (parameters[6] * minus_rate_dot_2_leg1 + t235 * parameters[7]));
+        let t347 = ::overact::math::signed(
             parameters[9],
             actuator_velocities[0] + minus_rate_2_leg1,
         );
-        let t354 = actuator_accelerations[0] * parameters[0]
+        let t348 = actuator_accelerations[0] * parameters[0]
             + actuator_accelerations[0] * parameters[1]
             + actuator_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], actuator_velocities[0])
-            + parameters[4] + t350 + t353;
-        let t363 = ::overact::math::signed(
+            + parameters[4] + t344 + t347;
+        let t357 = ::overact::math::signed(
             parameters[10],
             minus_rate_2_leg1 + rate_3_leg1,
         );
-        let t364 = parameters[6] * t343 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t334 - t353 - t363;
-        let t371 = 5.0 * (t54 * t222) + 2.5 * (t223 * actuator_accelerations[1]);
-        let t375 = t312 + t29 * rate_dot_3_leg1 - t192;
-        let t379 = t308 + t23 * rate_dot_3_leg1 + t195;
-        let minus_rate_dot_2_leg2 = t55
-            * (t209 * t375 - t200 * t379 + 0.2 * t222 + t219 * t224);
-        let t392 = t53 * t379 - t107 * t375 - t220;
-        let t396 = ::overact::math::signed(
+        let t358 = parameters[6] * t337 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t330 - t347 - t357;
+        let t361 = 5.0 * t58;
+        let t364 = t218 * t361 + actuator_accelerations[1] * t220;
+        let t368 = t308 + t33 * rate_dot_3_leg1 - t188;
+        let t372 = t304 + t25 * rate_dot_3_leg1 + t191;
+        let minus_rate_dot_2_leg2 = t59
+            * (t205 * t368 - t196 * t372 + 0.2 * t218 + t215 * t220);
+        let t385 = t57 * t372 - t103 * t368 - t216;
+        let t389 = ::overact::math::signed(
             parameters[20],
             rate_2_leg2 - actuator_velocities[1],
         );
-        let t399 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
-        let t400 = parameters[17] * t371 - parameters[16] * minus_rate_dot_2_leg2
-            + parameters[18] * t392 + t396 - t399;
-        let t423 = 5.0 * t54
-            * (parameters[18] * minus_rate_dot_2_leg2 - t219 * parameters[17]
-                - parameters[19] * t392)
-            + t224
-                * (parameters[19] * t371
-                    - (parameters[17] * minus_rate_dot_2_leg2 + t219 * parameters[18]));
-        let t425 = actuator_accelerations[1] * parameters[11]
+        let t392 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
+        let t393 = parameters[17] * t364 - parameters[16] * minus_rate_dot_2_leg2
+            + parameters[18] * t385 + t389 - t392;
+        let t415 = t361
+            * (parameters[18] * minus_rate_dot_2_leg2 - t215 * parameters[17]
+                - parameters[19] * t385)
+            + t220
+                * (parameters[19] * t364
+                    - (parameters[17] * minus_rate_dot_2_leg2 + t215 * parameters[18]));
+        let t417 = actuator_accelerations[1] * parameters[11]
             + actuator_accelerations[1] * parameters[12]
             + actuator_velocities[1] * parameters[13]
             + ::overact::math::signed(parameters[14], actuator_velocities[1])
-            + parameters[15] + t423 - t396;
-        let t431 = t308 + t62 * rate_dot_3_leg1 - t257;
-        let t435 = t312 - t69 * rate_dot_3_leg1 - t260;
-        let rate_dot_2_leg3 = t95
-            * (t265 * t431 - t271 * t435 - 0.2 * t279 - t276 * t281);
-        let t448 = 5.0 * (t94 * t279) + 2.5 * (t280 * actuator_accelerations[2]);
-        let t454 = t113 * t435 - t93 * t431 + t277;
-        let t458 = ::overact::math::signed(
+            + parameters[15] + t415 - t389;
+        let t423 = t304 + t24 * rate_dot_3_leg1 - t253;
+        let t427 = t308 - t32 * rate_dot_3_leg1 - t256;
+        let rate_dot_2_leg3 = t91
+            * (t261 * t423 - t267 * t427 - 0.2 * t275 - t272 * t277);
+        let t436 = 5.0 * t90;
+        let t439 = t275 * t436 + actuator_accelerations[2] * t277;
+        let t445 = t109 * t427 - t89 * t423 + t273;
+        let t449 = ::overact::math::signed(
             parameters[31],
             rate_2_leg3 - actuator_velocities[2],
         );
-        let t461 = ::overact::math::signed(parameters[32], rate_3_leg1 - rate_2_leg3);
-        let t462 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t448
-            - parameters[29] * t454 + t458 - t461;
-        let t485 = 5.0 * t94
-            * (parameters[30] * t454
-                - (t276 * parameters[28] + parameters[29] * rate_dot_2_leg3))
-            + t281
-                * (parameters[28] * rate_dot_2_leg3 - t276 * parameters[29]
-                    + parameters[30] * t448);
-        let t487 = actuator_accelerations[2] * parameters[22]
+        let t452 = ::overact::math::signed(parameters[32], rate_3_leg1 - rate_2_leg3);
+        let t453 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t439
+            - parameters[29] * t445 + t449 - t452;
+        let t475 = t436
+            * (parameters[30] * t445
+                - (t272 * parameters[28] + parameters[29] * rate_dot_2_leg3))
+            + t277
+                * (parameters[28] * rate_dot_2_leg3 - t272 * parameters[29]
+                    + parameters[30] * t439);
+        let t477 = actuator_accelerations[2] * parameters[22]
             + actuator_accelerations[2] * parameters[23]
             + actuator_velocities[2] * parameters[24]
             + ::overact::math::signed(parameters[25], actuator_velocities[2])
-            + parameters[26] + t485 - t458;
-        let t490 = g1_vy_leg1 * t354 - minus_g2_vy_leg1 * t364 + g2_vy_leg2 * t400
-            - minus_g1_vy_leg2 * t425 + g2_vy_leg3 * t462 - minus_g1_vy_leg3 * t487;
-        let c12_leg1 = 5.0 * t16;
-        let s12_leg1 = 5.0 * t102;
-        let c3_leg1 = s_phi * c12_leg1 - c_phi * s12_leg1;
-        let rate_dot_2_leg1 = t18 * (t15 * t243 - t101 * t241 - t322 - t324);
-        let minus_s3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let t514 = 10.0
-            * (c3_leg1 * (t340 + 2.5 * (t248 * rate_dot_1_leg1) + 0.2 * rate_dot_2_leg1)
-                - minus_s3_leg1 * (5.0 * t245));
-        let t520 = c_phi * t312 + s_phi * t308;
-        let t528 = t514 * parameters[34] - rate_dot_3_leg1 * parameters[35]
-            + parameters[36] * t520 + t514 * parameters[38]
-            - rate_dot_3_leg1 * parameters[39] + parameters[40] * t520;
-        let t535 = c_phi * t308 - s_phi * t312;
-        let t543 = rate_dot_3_leg1 * parameters[34] + t514 * parameters[35]
-            + parameters[36] * t535 + rate_dot_3_leg1 * parameters[38]
-            + t514 * parameters[39] + parameters[40] * t535;
-        let t557 = g1_vx_leg2 * t425 - minus_g2_vx_leg2 * t400
-            - (minus_g1_vx_leg1 * t354 + minus_g2_vx_leg1 * t364) + g1_vx_leg3 * t487
-            - minus_g2_vx_leg3 * t462;
-        let t561 = t557 + c_phi * t528 - s_phi * t543;
-        let t563 = t490 + s_phi * t528 + c_phi * t543 + t123 * t561;
+            + parameters[26] + t475 - t449;
+        let t480 = g1_vy_leg1 * t348 - minus_g2_vy_leg1 * t358 + g2_vy_leg2 * t393
+            - minus_g1_vy_leg2 * t417 + g2_vy_leg3 * t453 - minus_g1_vy_leg3 * t477;
+        let t482 = 10.0 * t310;
+        let t484 = 10.0 * t314;
+        let t493 = t304 * parameters[36]
+            - (parameters[34] * t482 + parameters[35] * t484) - parameters[38] * t482
+            - parameters[39] * t484 + t304 * parameters[40];
+        let t505 = g1_vx_leg2 * t417 - minus_g2_vx_leg2 * t393
+            - (minus_g1_vx_leg1 * t348 + minus_g2_vx_leg1 * t358) + g1_vx_leg3 * t477
+            - minus_g2_vx_leg3 * t453;
+        let t516 = parameters[35] * t482 - parameters[34] * t484 + t308 * parameters[36]
+            - parameters[38] * t484 + parameters[39] * t482 + t308 * parameters[40];
+        let t517 = t505 + t516;
+        let t519 = t480 + t493 + t119 * t517;
         let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let g2_wz_leg2 = t23 * g2_vy_leg2 - t29 * minus_g2_vx_leg2;
-        let g2_wz_leg3 = t62 * g2_vy_leg3 + t69 * minus_g2_vx_leg3;
-        let t587 = g1_wz_leg1 * t354 + g2_wz_leg1 * t364 + t363 + g1_wz_leg2 * t425
-            + g2_wz_leg2 * t400 + t399 + g2_wz_leg3 * t462 - minus_g1_wz_leg3 * t487
-            + t461;
-        let t598 = rate_dot_3_leg1 * parameters[33] + parameters[34] * t535
-            - parameters[35] * t520 + rate_dot_3_leg1 * parameters[37]
-            + parameters[38] * t535 - parameters[39] * t520;
-        let t604 = t168 * (t587 + t598 - t155 * t561 - t165 * t563);
-        let t606 = t126 * t563 - t165 * t604;
-        let t612 = t122 * t561 + t123 * t606 - t155 * t604;
+        let g2_wz_leg2 = t25 * g2_vy_leg2 - t33 * minus_g2_vx_leg2;
+        let g2_wz_leg3 = t24 * g2_vy_leg3 + t32 * minus_g2_vx_leg3;
+        let t543 = g1_wz_leg1 * t348 + g2_wz_leg1 * t358 + t357 + g1_wz_leg2 * t417
+            + g2_wz_leg2 * t393 + t392 + g2_wz_leg3 * t453 - minus_g1_wz_leg3 * t477
+            + t452;
+        let t547 = c_phi * t304 - s_phi * t308;
+        let t552 = s_phi * t304 + c_phi * t308;
+        let t560 = rate_dot_3_leg1 * parameters[33] + parameters[34] * t547
+            - parameters[35] * t552 + rate_dot_3_leg1 * parameters[37]
+            + parameters[38] * t547 - parameters[39] * t552;
+        let t566 = t164 * (t543 + t560 - t151 * t517 - t161 * t519);
+        let t568 = t122 * t519 - t161 * t566;
+        let t574 = t118 * t517 + t119 * t568 - t151 * t566;
         Ok([
-            g1_vy_leg1 * t606 - minus_g1_vx_leg1 * t612 + g1_wz_leg1 * t604,
-            g1_vx_leg2 * t612 - minus_g1_vy_leg2 * t606 + g1_wz_leg2 * t604,
-            g1_vx_leg3 * t612 - minus_g1_vy_leg3 * t606 - minus_g1_wz_leg3 * t604,
+            g1_vy_leg1 * t568 - minus_g1_vx_leg1 * t574 + g1_wz_leg1 * t566,
+            g1_vx_leg2 * t574 - minus_g1_vy_leg2 * t568 + g1_wz_leg2 * t566,
+            g1_vx_leg3 * t574 - minus_g1_vy_leg3 * t568 - minus_g1_wz_leg3 * t566,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -5272,7 +5270,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 420 operations (161 additions, 253 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 419 intermediates.
+    /// 410 operations (160 additions, 244 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 409 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5281,174 +5279,176 @@ impl Planar3Rrr {
         parameters: &[f64; 41],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t26 = t17 * t23 - 0.5 * t14;
-        let t27 = t14 + t26;
-        let t31 = 0.5 * t17 + t14 * t23;
-        let t32 = t17 - t31;
-        let t34 = 4.330127018922193 * t27 + 2.5 * t32;
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = t34 * t36;
-        let t41 = 5.0 * t35;
-        let minus_g2_vx_leg2 = (2.5 * t31 - 4.330127018922193 * t26) * t36;
-        let t50 = t20 - 0.08;
-        let t51 = 2.5 * t50;
-        let t54 = 2.5 * (t50 * g1_vx_leg2);
-        let t59 = g1_vx_leg2 * parameters[12] + g1_vx_leg2 * parameters[11]
-            + t41 * (minus_g2_vx_leg2 * parameters[18] + t34 * parameters[19])
-            - t51 * (minus_g2_vx_leg2 * parameters[17] - parameters[19] * t54);
-        let t68 = 0.1 * s_phi;
-        let t69 = pose[0] - t68;
-        let t71 = 0.1 * c_phi;
-        let t73 = pose[1] + t71 - 0.35;
-        let t76 = t73 * t73 + t69 * t69;
-        let t78 = 0.04 / t76 - 0.25;
-        ::overact::guard::reach(t78, "leg1")?;
-        let t79 = ::overact::math::sqrt(t78);
-        let t81 = 0.5 * t69 + t73 * t79;
-        let t82 = t81 - t69;
-        let t83 = t76 * t79;
-        ::overact::guard::leg(t83, 0.03903123748998999, "leg1")?;
-        let t84 = 1.0 / t83;
-        let minus_g1_vx_leg1 = t82 * t84;
-        let t86 = 5.0 * t83;
-        let minus_g2_vx_leg1 = t81 * t84;
-        let s12_leg1 = 5.0 * t82;
-        let t93 = t76 - 0.08;
-        let t94 = 2.5 * t93;
-        let t96 = 2.5 * (t93 * minus_g1_vx_leg1);
-        let t105 = t86 * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
-            - t94 * (parameters[8] * t96 + minus_g2_vx_leg1 * parameters[6])
+        let t2 = 0.1 * s_phi;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t6 = 0.1 * minus_c123_leg2;
+        let t7 = t2 - t6;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t11 = 0.1 * c_phi;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t15 = 0.1 * minus_s123_leg2;
+        let t16 = t11 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t26 = t20 * t20 + t23 * t23;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t23 * t29 - 0.5 * t20;
+        let t33 = t20 + t32;
+        let t37 = 0.5 * t23 + t20 * t29;
+        let t38 = t23 - t37;
+        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
+        let t41 = t26 * t29;
+        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
+        let t42 = 0.2 / t41;
+        let g1_vx_leg2 = t40 * t42;
+        let t47 = 5.0 * t41;
+        let minus_g2_vx_leg2 = (2.5 * t37 - 4.330127018922193 * t32) * t42;
+        let t57 = 2.5 * (t26 - 0.08);
+        let t59 = g1_vx_leg2 * t57;
+        let t64 = g1_vx_leg2 * parameters[12] + g1_vx_leg2 * parameters[11]
+            + t47 * (minus_g2_vx_leg2 * parameters[18] + t40 * parameters[19])
+            - t57 * (minus_g2_vx_leg2 * parameters[17] - parameters[19] * t59);
+        let t73 = pose[0] - t2;
+        let t76 = pose[1] + t11 - 0.35;
+        let t79 = t76 * t76 + t73 * t73;
+        let t81 = 0.04 / t79 - 0.25;
+        ::overact::guard::reach(t81, "leg1")?;
+        let t82 = ::overact::math::sqrt(t81);
+        let t84 = 0.5 * t73 + t76 * t82;
+        let t85 = t84 - t73;
+        let t86 = t79 * t82;
+        ::overact::guard::leg(t86, 0.03903123748998999, "leg1")?;
+        let t87 = 1.0 / t86;
+        let minus_g1_vx_leg1 = t85 * t87;
+        let t89 = 5.0 * t86;
+        let minus_g2_vx_leg1 = t84 * t87;
+        let s12_leg1 = 5.0 * t85;
+        let t97 = 2.5 * (t79 - 0.08);
+        let t98 = minus_g1_vx_leg1 * t97;
+        let t107 = t89 * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
+            - t97 * (parameters[8] * t98 + minus_g2_vx_leg1 * parameters[6])
             - (minus_g1_vx_leg1 * parameters[0] + minus_g1_vx_leg1 * parameters[1]);
-        let t114 = g1_vx_leg2 * t59
+        let t116 = g1_vx_leg2 * t64
             + minus_g2_vx_leg2
-                * (t34 * parameters[18] + minus_g2_vx_leg2 * parameters[16]
-                    - parameters[17] * t54)
-            - (minus_g1_vx_leg1 * t105
+                * (t40 * parameters[18] + minus_g2_vx_leg2 * parameters[16]
+                    - parameters[17] * t59)
+            - (minus_g1_vx_leg1 * t107
                 + minus_g2_vx_leg1
                     * (s12_leg1 * parameters[7]
-                        - (parameters[6] * t96 + minus_g2_vx_leg1 * parameters[5])));
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t118 = 0.1 * minus_c123_leg2;
-        let t120 = pose[0] + t118 - 0.3031088913245535;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t125 = 0.1 * minus_s123_leg2;
-        let t127 = pose[1] + t125 + 0.175;
-        let t129 = 0.8660254037844386 * t120 - 0.5 * t127;
-        let t133 = 0.5 * t120 + 0.8660254037844386 * t127;
-        let t136 = t129 * t129 + t133 * t133;
-        let t138 = 0.04 / t136 - 0.25;
-        ::overact::guard::reach(t138, "leg3")?;
-        let t139 = ::overact::math::sqrt(t138);
-        let t141 = 0.5 * t129 + t133 * t139;
-        let t142 = t129 - t141;
-        let t146 = 0.5 * t133 - t129 * t139;
-        let t147 = t133 - t146;
-        let t149 = 4.330127018922193 * t142 + 2.5 * t147;
-        let t150 = t136 * t139;
-        ::overact::guard::leg(t150, 0.03903123748998999, "leg3")?;
-        let t151 = 0.2 / t150;
-        let g1_vx_leg3 = t149 * t151;
-        let t156 = 5.0 * t150;
-        let minus_g2_vx_leg3 = (4.330127018922193 * t141 + 2.5 * t146) * t151;
-        let t165 = t136 - 0.08;
-        let t166 = 2.5 * t165;
-        let t168 = 2.5 * (t165 * g1_vx_leg3);
-        let t174 = g1_vx_leg3 * parameters[22] + g1_vx_leg3 * parameters[23]
-            + t156 * (t149 * parameters[30] + minus_g2_vx_leg3 * parameters[29])
-            + t166 * (parameters[30] * t168 - minus_g2_vx_leg3 * parameters[28]);
-        let t184 = parameters[36] + parameters[40];
-        let t185 = t114 + g1_vx_leg3 * t174
+                        - (parameters[6] * t98 + minus_g2_vx_leg1 * parameters[5])));
+        let t118 = pose[0] + t6 - 0.3031088913245535;
+        let t121 = pose[1] + t15 + 0.175;
+        let t123 = 0.8660254037844386 * t118 - 0.5 * t121;
+        let t127 = 0.5 * t118 + 0.8660254037844386 * t121;
+        let t130 = t123 * t123 + t127 * t127;
+        let t132 = 0.04 / t130 - 0.25;
+        ::overact::guard::reach(t132, "leg3")?;
+        let t133 = ::overact::math::sqrt(t132);
+        let t135 = 0.5 * t123 + t127 * t133;
+        let t136 = t123 - t135;
+        let t140 = 0.5 * t127 - t123 * t133;
+        let t141 = t127 - t140;
+        let t143 = 4.330127018922193 * t136 + 2.5 * t141;
+        let t144 = t130 * t133;
+        ::overact::guard::leg(t144, 0.03903123748998999, "leg3")?;
+        let t145 = 0.2 / t144;
+        let g1_vx_leg3 = t143 * t145;
+        let t150 = 5.0 * t144;
+        let minus_g2_vx_leg3 = (4.330127018922193 * t135 + 2.5 * t140) * t145;
+        let t160 = 2.5 * (t130 - 0.08);
+        let t161 = g1_vx_leg3 * t160;
+        let t167 = g1_vx_leg3 * parameters[22] + g1_vx_leg3 * parameters[23]
+            + t150 * (t143 * parameters[30] + minus_g2_vx_leg3 * parameters[29])
+            + t160 * (parameters[30] * t161 - minus_g2_vx_leg3 * parameters[28]);
+        let t177 = parameters[36] + parameters[40];
+        let t178 = t116 + g1_vx_leg3 * t167
             - minus_g2_vx_leg3
-                * (parameters[28] * t168 - minus_g2_vx_leg3 * parameters[27]
-                    - t149 * parameters[29]) + t184;
-        let g2_vy_leg3 = (2.5 * t141 - 4.330127018922193 * t146) * t151;
-        let t193 = 2.5 * t142 - 4.330127018922193 * t147;
-        let minus_g1_vy_leg3 = t193 * t151;
-        let t196 = 2.5 * (t165 * minus_g1_vy_leg3);
-        let t208 = t166 * (g2_vy_leg3 * parameters[28] - parameters[30] * t196)
-            - t156 * (t193 * parameters[30] + g2_vy_leg3 * parameters[29])
+                * (parameters[28] * t161 - minus_g2_vx_leg3 * parameters[27]
+                    - t143 * parameters[29]) + t177;
+        let g2_vy_leg3 = (2.5 * t135 - 4.330127018922193 * t140) * t145;
+        let t186 = 2.5 * t136 - 4.330127018922193 * t141;
+        let minus_g1_vy_leg3 = t186 * t145;
+        let t188 = t160 * minus_g1_vy_leg3;
+        let t200 = t160 * (g2_vy_leg3 * parameters[28] - parameters[30] * t188)
+            - t150 * (t186 * parameters[30] + g2_vy_leg3 * parameters[29])
             - (minus_g1_vy_leg3 * parameters[22] + minus_g1_vy_leg3 * parameters[23]);
-        let t214 = g2_vy_leg3 * parameters[27] - parameters[28] * t196
-            + t193 * parameters[29];
-        let t219 = 4.330127018922193 * t32 - 2.5 * t27;
-        let minus_g1_vy_leg2 = t219 * t36;
-        let g2_vy_leg2 = (4.330127018922193 * t31 + 2.5 * t26) * t36;
-        let t233 = 2.5 * (t50 * minus_g1_vy_leg2);
-        let t239 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
-            + t41 * (g2_vy_leg2 * parameters[18] + t219 * parameters[19])
-            + t51 * (parameters[19] * t233 - g2_vy_leg2 * parameters[17]);
-        let t245 = t219 * parameters[18]
-            - (parameters[17] * t233 - g2_vy_leg2 * parameters[16]);
-        let t250 = 0.5 * t73 - t69 * t79;
-        let t251 = t73 - t250;
-        let g1_vy_leg1 = t251 * t84;
-        let minus_g2_vy_leg1 = t250 * t84;
-        let c12_leg1 = 5.0 * t251;
-        let t263 = 2.5 * (t93 * g1_vy_leg1);
-        let t269 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + t86 * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            + t94 * (parameters[8] * t263 - minus_g2_vy_leg1 * parameters[6]);
-        let t275 = parameters[6] * t263 - minus_g2_vy_leg1 * parameters[5]
+        let t206 = g2_vy_leg3 * parameters[27] - parameters[28] * t188
+            + t186 * parameters[29];
+        let t211 = 4.330127018922193 * t38 - 2.5 * t33;
+        let minus_g1_vy_leg2 = t211 * t42;
+        let g2_vy_leg2 = (4.330127018922193 * t37 + 2.5 * t32) * t42;
+        let t224 = t57 * minus_g1_vy_leg2;
+        let t230 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
+            + t47 * (g2_vy_leg2 * parameters[18] + t211 * parameters[19])
+            + t57 * (parameters[19] * t224 - g2_vy_leg2 * parameters[17]);
+        let t236 = t211 * parameters[18]
+            - (parameters[17] * t224 - g2_vy_leg2 * parameters[16]);
+        let t241 = 0.5 * t76 - t73 * t82;
+        let t242 = t76 - t241;
+        let g1_vy_leg1 = t242 * t87;
+        let minus_g2_vy_leg1 = t241 * t87;
+        let c12_leg1 = 5.0 * t242;
+        let t253 = t97 * g1_vy_leg1;
+        let t259 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+            + t89 * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            + t97 * (parameters[8] * t253 - minus_g2_vy_leg1 * parameters[6]);
+        let t265 = parameters[6] * t253 - minus_g2_vy_leg1 * parameters[5]
             - c12_leg1 * parameters[7];
-        let t279 = g1_vx_leg3 * t208 - minus_g2_vx_leg3 * t214
-            - (g1_vx_leg2 * t239 + minus_g2_vx_leg2 * t245 + minus_g1_vx_leg1 * t269
-                + minus_g2_vx_leg1 * t275);
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let g2_wz_leg2 = t4 * g2_vy_leg2 - t10 * minus_g2_vx_leg2;
-        let t291 = 2.5 * (t50 * g1_wz_leg2);
-        let t298 = t4 * t219 - t10 * t34;
-        let t303 = g1_wz_leg2 * parameters[12] + g1_wz_leg2 * parameters[11]
-            + t51 * (g2_wz_leg2 * parameters[17] + parameters[19] * t291)
-            - t41 * (g2_wz_leg2 * parameters[18] + parameters[19] * t298);
-        let t309 = parameters[18] * t298 + g2_wz_leg2 * parameters[16]
-            + parameters[17] * t291;
-        let g1_wz_leg1 = t71 * minus_g1_vx_leg1 - t68 * g1_vy_leg1;
-        let t319 = 2.5 * (t93 * g1_wz_leg1);
-        let g2_wz_leg1 = t68 * minus_g2_vy_leg1 + t71 * minus_g2_vx_leg1;
-        let c3_leg1 = s_phi * c12_leg1 - c_phi * s12_leg1;
-        let t331 = 0.1 * c3_leg1;
-        let t336 = g1_wz_leg1 * parameters[0] + g1_wz_leg1 * parameters[1]
-            + t94 * (parameters[8] * t319 + g2_wz_leg1 * parameters[6])
-            - t86 * (g2_wz_leg1 * parameters[7] + parameters[8] * t331);
-        let t342 = parameters[6] * t319 + g2_wz_leg1 * parameters[5]
-            + parameters[7] * t331;
-        let g2_wz_leg3 = t118 * g2_vy_leg3 + t125 * minus_g2_vx_leg3;
-        let minus_g1_wz_leg3 = t118 * minus_g1_vy_leg3 + t125 * g1_vx_leg3;
-        let t354 = 2.5 * (t165 * minus_g1_wz_leg3);
-        let t360 = t125 * t149 + t118 * t193;
-        let t369 = t166 * (g2_wz_leg3 * parameters[28] - parameters[30] * t354)
-            - t156 * (parameters[30] * t360 + g2_wz_leg3 * parameters[29])
+        let t269 = g1_vx_leg3 * t200 - minus_g2_vx_leg3 * t206
+            - (g1_vx_leg2 * t230 + minus_g2_vx_leg2 * t236 + minus_g1_vx_leg1 * t259
+                + minus_g2_vx_leg1 * t265);
+        let t272 = t7 * t211 - t16 * t40;
+        let minus_g1_wz_leg2 = t42 * t272;
+        let g2_wz_leg2 = t7 * g2_vy_leg2 - t16 * minus_g2_vx_leg2;
+        let t281 = t57 * minus_g1_wz_leg2;
+        let t290 = t57 * (g2_wz_leg2 * parameters[17] - parameters[19] * t281)
+            - t47 * (g2_wz_leg2 * parameters[18] + parameters[19] * t272)
+            - (minus_g1_wz_leg2 * parameters[12] + minus_g1_wz_leg2 * parameters[11]);
+        let t296 = parameters[18] * t272 + g2_wz_leg2 * parameters[16]
+            - parameters[17] * t281;
+        let g1_wz_leg1 = t11 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
+        let t305 = t97 * g1_wz_leg1;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t11 * minus_g2_vx_leg1;
+        let t314 = t89 * g1_wz_leg1;
+        let t319 = g1_wz_leg1 * parameters[0] + g1_wz_leg1 * parameters[1]
+            + t97 * (parameters[8] * t305 + g2_wz_leg1 * parameters[6])
+            - t89 * (g2_wz_leg1 * parameters[7] - parameters[8] * t314);
+        let t325 = parameters[6] * t305 + g2_wz_leg1 * parameters[5]
+            - parameters[7] * t314;
+        let g2_wz_leg3 = t6 * g2_vy_leg3 + t15 * minus_g2_vx_leg3;
+        let t335 = t15 * t143 + t6 * t186;
+        let minus_g1_wz_leg3 = t145 * t335;
+        let t337 = t160 * minus_g1_wz_leg3;
+        let t349 = t160 * (g2_wz_leg3 * parameters[28] - parameters[30] * t337)
+            - t150 * (parameters[30] * t335 + g2_wz_leg3 * parameters[29])
             - (minus_g1_wz_leg3 * parameters[22] + minus_g1_wz_leg3 * parameters[23]);
-        let t375 = g2_wz_leg3 * parameters[27] - parameters[28] * t354
-            + parameters[29] * t360;
-        let t378 = g1_vx_leg2 * t303 - minus_g2_vx_leg2 * t309
-            - (minus_g1_vx_leg1 * t336 + minus_g2_vx_leg1 * t342) + g1_vx_leg3 * t369
-            - minus_g2_vx_leg3 * t375;
-        let t379 = parameters[35] + parameters[39];
-        let t381 = parameters[34] + parameters[38];
-        let t384 = t378 - (c_phi * t379 + s_phi * t381);
-        let t395 = g1_vy_leg1 * t269 - minus_g2_vy_leg1 * t275 + g2_vy_leg2 * t245
-            + minus_g1_vy_leg2 * t239 + g2_vy_leg3 * t214 - minus_g1_vy_leg3 * t208;
-        let t407 = g1_vy_leg1 * t336 - minus_g2_vy_leg1 * t342 + g2_vy_leg2 * t309
-            - minus_g1_vy_leg2 * t303 + g2_vy_leg3 * t375 - minus_g1_vy_leg3 * t369;
-        let t411 = t407 + c_phi * t381 - s_phi * t379;
-        let t422 = g1_wz_leg1 * t336 + g2_wz_leg1 * t342 + g1_wz_leg2 * t303
-            + g2_wz_leg2 * t309 + g2_wz_leg3 * t375 - minus_g1_wz_leg3 * t369;
+        let t355 = g2_wz_leg3 * parameters[27] - parameters[28] * t337
+            + parameters[29] * t335;
+        let t358 = g1_vx_leg2 * t290 - minus_g2_vx_leg2 * t296
+            - (minus_g1_vx_leg1 * t319 + minus_g2_vx_leg1 * t325) + g1_vx_leg3 * t349
+            - minus_g2_vx_leg3 * t355;
+        let t359 = 9.81 * s_phi;
+        let t361 = 9.81 * c_phi;
+        let t369 = t358
+            - 0.1019367991845056
+                * (parameters[34] * t359 + parameters[35] * t361 + parameters[38] * t359
+                    + parameters[39] * t361);
+        let t380 = g1_vy_leg1 * t259 - minus_g2_vy_leg1 * t265 + g2_vy_leg2 * t236
+            + minus_g1_vy_leg2 * t230 + g2_vy_leg3 * t206 - minus_g1_vy_leg3 * t200;
+        let t392 = g1_vy_leg1 * t319 - minus_g2_vy_leg1 * t325 + g2_vy_leg2 * t296
+            - minus_g1_vy_leg2 * t290 + g2_vy_leg3 * t355 - minus_g1_vy_leg3 * t349;
+        let t401 = t392
+            - 0.1019367991845056
+                * (parameters[35] * t359 - parameters[34] * t361 - parameters[38] * t361
+                    + parameters[39] * t359);
+        let t412 = g1_wz_leg1 * t319 + g2_wz_leg1 * t325 + g2_wz_leg2 * t296
+            - minus_g1_wz_leg2 * t290 + g2_wz_leg3 * t355 - minus_g1_wz_leg3 * t349;
         Ok([
-            [t185, t279, t384], [t279, t395 + t184, t411],
-            [t384, t411, t422 + parameters[33] + parameters[37]],
+            [t178, t269, t369], [t269, t380 + t177, t401],
+            [t369, t401, t412 + parameters[33] + parameters[37]],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -5460,7 +5460,7 @@ impl Planar3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 412 operations (166 additions, 240 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 423 intermediates.
+    /// 391 operations (164 additions, 221 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 9 signs, 402 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5470,104 +5470,109 @@ impl Planar3Rrr {
         parameters: &[f64; 41],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
-        let t6 = pose[0] + t4 + 0.3031088913245535;
-        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
-        let t12 = pose[1] - t10 + 0.175;
-        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
-        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
-        let t20 = t14 * t14 + t17 * t17;
-        let t22 = 0.04 / t20 - 0.25;
-        ::overact::guard::reach(t22, "leg2")?;
-        let t23 = ::overact::math::sqrt(t22);
-        let t26 = t17 * t23 - 0.5 * t14;
-        let t27 = t14 + t26;
-        let t31 = 0.5 * t17 + t14 * t23;
-        let t32 = t17 - t31;
-        let t34 = 4.330127018922193 * t27 + 2.5 * t32;
-        let t35 = t20 * t23;
-        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
-        let t36 = 0.2 / t35;
-        let g1_vx_leg2 = t34 * t36;
-        let t38 = t10 * twist[2];
-        let t39 = twist[0] + t38;
-        let t43 = 4.330127018922193 * t32 - 2.5 * t27;
-        let minus_g1_vy_leg2 = t43 * t36;
-        let t45 = t4 * twist[2];
-        let t46 = twist[1] + t45;
-        let rate_1_leg2 = g1_vx_leg2 * t39 - minus_g1_vy_leg2 * t46;
-        let t50 = twist[2] * t45;
-        let t52 = twist[2] * t38;
-        let t57 = 4.330127018922193 * t31 + 2.5 * t26;
-        let g2_vy_leg2 = t57 * t36;
-        let t62 = 2.5 * t31 - 4.330127018922193 * t26;
-        let minus_g2_vx_leg2 = t62 * t36;
-        let rate_2_leg2 = g2_vy_leg2 * t46 - minus_g2_vx_leg2 * t39;
-        let t66 = rate_2_leg2 * rate_2_leg2;
-        let t68 = t34 * t50 + t43 * t52 - 0.2 * t66;
-        let t69 = rate_1_leg2 * rate_1_leg2;
-        let t70 = t20 - 0.08;
-        let t71 = 2.5 * t70;
-        let minus_rate_dot_1_leg2 = t36 * (t68 - t69 * t71);
-        let minus_rate_dot_2_leg2 = t36
-            * (0.2 * t69 - (t62 * t50 + t57 * t52) + t66 * t71);
-        let t101 = 5.0 * (t35 * t69) - 2.5 * (t70 * minus_rate_dot_1_leg2);
-        let t108 = 5.0 * t35
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t66
-                - parameters[19] * t68)
-            + t71
-                * (parameters[19] * t101
-                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t66));
-        let t111 = ::overact::math::signed(parameters[20], rate_2_leg2 - rate_1_leg2);
-        let t112 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
+        let t2 = 0.1 * s_phi;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t6 = 0.1 * minus_c123_leg2;
+        let t7 = t2 - t6;
+        let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t11 = 0.1 * c_phi;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t15 = 0.1 * minus_s123_leg2;
+        let t16 = t11 + t15;
+        let t18 = pose[1] - t16 + 0.175;
+        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
+        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
+        let t26 = t20 * t20 + t23 * t23;
+        let t28 = 0.04 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t23 * t29 - 0.5 * t20;
+        let t33 = t20 + t32;
+        let t37 = 0.5 * t23 + t20 * t29;
+        let t38 = t23 - t37;
+        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
+        let t41 = t26 * t29;
+        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
+        let t42 = 0.2 / t41;
+        let g1_vx_leg2 = t40 * t42;
+        let t44 = t16 * twist[2];
+        let t45 = twist[0] + t44;
+        let t49 = 4.330127018922193 * t38 - 2.5 * t33;
+        let minus_g1_vy_leg2 = t49 * t42;
+        let t51 = t7 * twist[2];
+        let t52 = twist[1] + t51;
+        let rate_1_leg2 = g1_vx_leg2 * t45 - minus_g1_vy_leg2 * t52;
+        let t56 = twist[2] * t51;
+        let t58 = twist[2] * t44;
+        let t63 = 4.330127018922193 * t37 + 2.5 * t32;
+        let g2_vy_leg2 = t63 * t42;
+        let t68 = 2.5 * t37 - 4.330127018922193 * t32;
+        let minus_g2_vx_leg2 = t68 * t42;
+        let rate_2_leg2 = g2_vy_leg2 * t52 - minus_g2_vx_leg2 * t45;
+        let t72 = rate_2_leg2 * rate_2_leg2;
+        let t74 = t40 * t56 + t49 * t58 - 0.2 * t72;
+        let t75 = rate_1_leg2 * rate_1_leg2;
+        let t77 = 2.5 * (t26 - 0.08);
+        let minus_rate_dot_1_leg2 = t42 * (t74 - t75 * t77);
+        let t88 = 5.0 * t41;
+        let minus_rate_dot_2_leg2 = t42
+            * (0.2 * t75 - (t68 * t56 + t63 * t58) + t72 * t77);
+        let t105 = t75 * t88 - t77 * minus_rate_dot_1_leg2;
+        let t112 = t88
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t72
+                - parameters[19] * t74)
+            + t77
+                * (parameters[19] * t105
+                    - (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t72));
+        let t115 = ::overact::math::signed(parameters[20], rate_2_leg2 - rate_1_leg2);
+        let t116 = parameters[13] * rate_1_leg2 - parameters[12] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[14], rate_1_leg2) + parameters[15]
-            - parameters[11] * minus_rate_dot_1_leg2 + t108 - t111;
-        let t121 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t122 = parameters[17] * t101 - parameters[16] * minus_rate_dot_2_leg2
-            + parameters[18] * t68 + t111 - t121;
-        let t125 = 0.1 * s_phi;
-        let t126 = pose[0] - t125;
-        let t128 = 0.1 * c_phi;
-        let t130 = pose[1] + t128 - 0.35;
-        let t133 = t130 * t130 + t126 * t126;
-        let t135 = 0.04 / t133 - 0.25;
-        ::overact::guard::reach(t135, "leg1")?;
-        let t136 = ::overact::math::sqrt(t135);
-        let t138 = 0.5 * t126 + t130 * t136;
-        let t139 = t138 - t126;
-        let t140 = t133 * t136;
-        ::overact::guard::leg(t140, 0.03903123748998999, "leg1")?;
-        let t141 = 1.0 / t140;
-        let minus_g1_vx_leg1 = t139 * t141;
-        let minus_g2_vx_leg1 = t138 * t141;
-        let t144 = t128 * twist[2];
-        let t145 = twist[0] - t144;
-        let t149 = 0.5 * t130 - t126 * t136;
-        let minus_g2_vy_leg1 = t149 * t141;
-        let t151 = t125 * twist[2];
-        let t152 = twist[1] - t151;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t145 + minus_g2_vy_leg1 * t152;
-        let t155 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t157 = twist[2] * t151;
-        let t159 = t130 - t149;
-        let t160 = twist[2] * t144;
-        let t162 = t139 * t157 + t159 * t160;
-        let t163 = 0.04 * t155 - t162;
-        let g1_vy_leg1 = t159 * t141;
-        let rate_1_leg1 = g1_vy_leg1 * t152 - minus_g1_vx_leg1 * t145;
-        let t168 = rate_1_leg1 * rate_1_leg1;
-        let t169 = t133 - 0.08;
-        let t170 = 0.5 * t169;
-        let rate_dot_1_leg1 = t141 * (t163 + t168 * t170);
-        let t183 = 5.0 * t163;
-        let rate_dot_2_leg1 = t141
-            * (t149 * t160 - t138 * t157 - 0.04 * t168 - t155 * t170);
-        let t206 = 5.0 * (t140 * t168) + 2.5 * (t169 * rate_dot_1_leg1);
-        let t210 = 5.0 * t140
-            * (parameters[8] * t183
-                - (parameters[6] * t155 + parameters[7] * rate_dot_2_leg1))
-            + 2.5 * t169
-                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t155
+            - parameters[11] * minus_rate_dot_1_leg2 + t112 - t115;
+        let t125 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t126 = parameters[17] * t105 - parameters[16] * minus_rate_dot_2_leg2
+            + parameters[18] * t74 + t115 - t125;
+        let t129 = pose[0] - t2;
+        let t132 = pose[1] + t11 - 0.35;
+        let t135 = t132 * t132 + t129 * t129;
+        let t137 = 0.04 / t135 - 0.25;
+        ::overact::guard::reach(t137, "leg1")?;
+        let t138 = ::overact::math::sqrt(t137);
+        let t140 = 0.5 * t129 + t132 * t138;
+        let t141 = t140 - t129;
+        let t142 = t135 * t138;
+        ::overact::guard::leg(t142, 0.03903123748998999, "leg1")?;
+        let t143 = 1.0 / t142;
+        let minus_g1_vx_leg1 = t141 * t143;
+        let minus_g2_vx_leg1 = t140 * t143;
+        let t146 = t11 * twist[2];
+        let t147 = twist[0] - t146;
+        let t151 = 0.5 * t132 - t129 * t138;
+        let minus_g2_vy_leg1 = t151 * t143;
+        let t153 = t2 * twist[2];
+        let t154 = twist[1] - t153;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t147 + minus_g2_vy_leg1 * t154;
+        let t157 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t159 = twist[2] * t153;
+        let t161 = t132 - t151;
+        let t162 = twist[2] * t146;
+        let t165 = 0.04 * t157 - (t141 * t159 + t161 * t162);
+        let g1_vy_leg1 = t161 * t143;
+        let rate_1_leg1 = g1_vy_leg1 * t154 - minus_g1_vx_leg1 * t147;
+        let t170 = rate_1_leg1 * rate_1_leg1;
+        let t171 = t135 - 0.08;
+        let t172 = 0.5 * t171;
+        let rate_dot_1_leg1 = t143 * (t165 + t170 * t172);
+        let t184 = 5.0 * t142;
+        let t185 = 5.0 * t165;
+        let rate_dot_2_leg1 = t143
+            * (t151 * t162 - t140 * t159 - 0.04 * t170 - t157 * t172);
+        let t200 = 2.5 * t171;
+        let t206 = t170 * t184 + rate_dot_1_leg1 * t200;
+        let t210 = t184
+            * (parameters[8] * t185
+                - (parameters[6] * t157 + parameters[7] * rate_dot_2_leg1))
+            + t200
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t157
                     + parameters[8] * t206);
         let t213 = ::overact::math::signed(
             parameters[9],
@@ -5579,89 +5584,84 @@ impl Planar3Rrr {
             + t213;
         let t223 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
         let t224 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t206
-            - parameters[7] * t183 - t213 - t223;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t231 = 0.1 * minus_c123_leg2;
-        let t233 = pose[0] + t231 - 0.3031088913245535;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t238 = 0.1 * minus_s123_leg2;
-        let t240 = pose[1] + t238 + 0.175;
-        let t242 = 0.8660254037844386 * t233 - 0.5 * t240;
-        let t246 = 0.5 * t233 + 0.8660254037844386 * t240;
-        let t249 = t242 * t242 + t246 * t246;
-        let t251 = 0.04 / t249 - 0.25;
-        ::overact::guard::reach(t251, "leg3")?;
-        let t252 = ::overact::math::sqrt(t251);
-        let t254 = 0.5 * t242 + t246 * t252;
-        let t255 = t242 - t254;
-        let t259 = 0.5 * t246 - t242 * t252;
-        let t260 = t246 - t259;
-        let t262 = 4.330127018922193 * t255 + 2.5 * t260;
-        let t263 = t249 * t252;
-        ::overact::guard::leg(t263, 0.03903123748998999, "leg3")?;
-        let t264 = 0.2 / t263;
-        let g1_vx_leg3 = t262 * t264;
-        let t268 = 2.5 * t255 - 4.330127018922193 * t260;
-        let t269 = t238 * twist[2];
-        let t270 = twist[2] * t269;
-        let t272 = t231 * twist[2];
-        let t273 = twist[2] * t272;
-        let t278 = 2.5 * t254 - 4.330127018922193 * t259;
-        let g2_vy_leg3 = t278 * t264;
-        let t280 = twist[1] + t272;
-        let t284 = 4.330127018922193 * t254 + 2.5 * t259;
-        let minus_g2_vx_leg3 = t284 * t264;
-        let t286 = twist[0] - t269;
-        let rate_2_leg3 = g2_vy_leg3 * t280 - minus_g2_vx_leg3 * t286;
-        let t289 = rate_2_leg3 * rate_2_leg3;
-        let t291 = t268 * t270 - t262 * t273 + 0.2 * t289;
-        let minus_g1_vy_leg3 = t268 * t264;
-        let rate_1_leg3 = g1_vx_leg3 * t286 - minus_g1_vy_leg3 * t280;
-        let t296 = rate_1_leg3 * rate_1_leg3;
-        let t297 = t249 - 0.08;
-        let t298 = 2.5 * t297;
-        let rate_dot_1_leg3 = t264 * (t291 + t296 * t298);
-        let rate_dot_2_leg3 = t264
-            * (t284 * t273 - t278 * t270 - 0.2 * t296 - t289 * t298);
-        let t332 = 5.0 * (t263 * t296) + 2.5 * (t297 * rate_dot_1_leg3);
-        let t336 = 5.0 * t263
-            * (parameters[30] * t291
-                - (parameters[28] * t289 + parameters[29] * rate_dot_2_leg3))
-            + t298
-                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t289
-                    + parameters[30] * t332);
-        let t339 = ::overact::math::signed(parameters[31], rate_2_leg3 - rate_1_leg3);
-        let t340 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
+            - parameters[7] * t185 - t213 - t223;
+        let t229 = pose[0] + t6 - 0.3031088913245535;
+        let t232 = pose[1] + t15 + 0.175;
+        let t234 = 0.8660254037844386 * t229 - 0.5 * t232;
+        let t238 = 0.5 * t229 + 0.8660254037844386 * t232;
+        let t241 = t234 * t234 + t238 * t238;
+        let t243 = 0.04 / t241 - 0.25;
+        ::overact::guard::reach(t243, "leg3")?;
+        let t244 = ::overact::math::sqrt(t243);
+        let t246 = 0.5 * t234 + t238 * t244;
+        let t247 = t234 - t246;
+        let t251 = 0.5 * t238 - t234 * t244;
+        let t252 = t238 - t251;
+        let t254 = 4.330127018922193 * t247 + 2.5 * t252;
+        let t255 = t241 * t244;
+        ::overact::guard::leg(t255, 0.03903123748998999, "leg3")?;
+        let t256 = 0.2 / t255;
+        let g1_vx_leg3 = t254 * t256;
+        let t260 = 2.5 * t247 - 4.330127018922193 * t252;
+        let t261 = t15 * twist[2];
+        let t262 = twist[2] * t261;
+        let t264 = t6 * twist[2];
+        let t265 = twist[2] * t264;
+        let t270 = 2.5 * t246 - 4.330127018922193 * t251;
+        let g2_vy_leg3 = t270 * t256;
+        let t272 = twist[1] + t264;
+        let t276 = 4.330127018922193 * t246 + 2.5 * t251;
+        let minus_g2_vx_leg3 = t276 * t256;
+        let t278 = twist[0] - t261;
+        let rate_2_leg3 = g2_vy_leg3 * t272 - minus_g2_vx_leg3 * t278;
+        let t281 = rate_2_leg3 * rate_2_leg3;
+        let t283 = t260 * t262 - t254 * t265 + 0.2 * t281;
+        let minus_g1_vy_leg3 = t260 * t256;
+        let rate_1_leg3 = g1_vx_leg3 * t278 - minus_g1_vy_leg3 * t272;
+        let t288 = rate_1_leg3 * rate_1_leg3;
+        let t290 = 2.5 * (t241 - 0.08);
+        let rate_dot_1_leg3 = t256 * (t283 + t288 * t290);
+        let t302 = 5.0 * t255;
+        let rate_dot_2_leg3 = t256
+            * (t276 * t265 - t270 * t262 - 0.2 * t288 - t281 * t290);
+        let t322 = t288 * t302 + t290 * rate_dot_1_leg3;
+        let t326 = t302
+            * (parameters[30] * t283
+                - (parameters[28] * t281 + parameters[29] * rate_dot_2_leg3))
+            + t290
+                * (parameters[28] * rate_dot_2_leg3 - parameters[29] * t281
+                    + parameters[30] * t322);
+        let t329 = ::overact::math::signed(parameters[31], rate_2_leg3 - rate_1_leg3);
+        let t330 = parameters[22] * rate_dot_1_leg3 + parameters[23] * rate_dot_1_leg3
             + parameters[24] * rate_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
-            + t336 - t339;
-        let t349 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
-        let t350 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t332
-            - parameters[29] * t291 + t339 - t349;
-        let t353 = g1_vx_leg2 * t112 - minus_g2_vx_leg2 * t122
-            - (minus_g1_vx_leg1 * t214 + minus_g2_vx_leg1 * t224) + g1_vx_leg3 * t340
-            - minus_g2_vx_leg3 * t350;
-        let c12_leg1 = 5.0 * t159;
-        let s12_leg1 = 5.0 * t139;
-        let c3_leg1 = s_phi * c12_leg1 - c_phi * s12_leg1;
-        let minus_s3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let t368 = 10.0
-            * (c3_leg1 * (t206 + 0.2 * rate_dot_2_leg1) - minus_s3_leg1 * (5.0 * t162));
-        let t371 = parameters[34] * t368 + parameters[38] * t368;
-        let t375 = parameters[35] * t368 + parameters[39] * t368;
-        let t389 = g1_vy_leg1 * t214 - minus_g2_vy_leg1 * t224 + g2_vy_leg2 * t122
-            - minus_g1_vy_leg2 * t112 + g2_vy_leg3 * t350 - minus_g1_vy_leg3 * t340;
-        let g1_wz_leg1 = t128 * minus_g1_vx_leg1 - t125 * g1_vy_leg1;
-        let g2_wz_leg1 = t125 * minus_g2_vy_leg1 + t128 * minus_g2_vx_leg1;
-        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
-        let g2_wz_leg2 = t4 * g2_vy_leg2 - t10 * minus_g2_vx_leg2;
-        let g2_wz_leg3 = t231 * g2_vy_leg3 + t238 * minus_g2_vx_leg3;
-        let minus_g1_wz_leg3 = t231 * minus_g1_vy_leg3 + t238 * g1_vx_leg3;
-        let t425 = g1_wz_leg1 * t214 + g2_wz_leg1 * t224 + t223 + g1_wz_leg2 * t112
-            + g2_wz_leg2 * t122 + t121 + g2_wz_leg3 * t350 - minus_g1_wz_leg3 * t340
-            + t349;
+            + t326 - t329;
+        let t339 = ::overact::math::signed(parameters[32], twist[2] - rate_2_leg3);
+        let t340 = parameters[27] * rate_dot_2_leg3 + parameters[28] * t322
+            - parameters[29] * t283 + t329 - t339;
+        let t343 = g1_vx_leg2 * t116 - minus_g2_vx_leg2 * t126
+            - (minus_g1_vx_leg1 * t214 + minus_g2_vx_leg1 * t224) + g1_vx_leg3 * t330
+            - minus_g2_vx_leg3 * t340;
+        let t344 = 10.0 * t159;
+        let t346 = 10.0 * t162;
+        let t364 = g1_vy_leg1 * t214 - minus_g2_vy_leg1 * t224 + g2_vy_leg2 * t126
+            - minus_g1_vy_leg2 * t116 + g2_vy_leg3 * t340 - minus_g1_vy_leg3 * t330;
+        let g1_wz_leg1 = t11 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t11 * minus_g2_vx_leg1;
+        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let g2_wz_leg2 = t7 * g2_vy_leg2 - t16 * minus_g2_vx_leg2;
+        let g2_wz_leg3 = t6 * g2_vy_leg3 + t15 * minus_g2_vx_leg3;
+        let minus_g1_wz_leg3 = t6 * minus_g1_vy_leg3 + t15 * g1_vx_leg3;
+        let t404 = g1_wz_leg1 * t214 + g2_wz_leg1 * t224 + t223 + g1_wz_leg2 * t116
+            + g2_wz_leg2 * t126 + t125 + g2_wz_leg3 * t340 - minus_g1_wz_leg3 * t330
+            + t339;
         Ok([
-            t353 + c_phi * t371 - s_phi * t375, t389 + s_phi * t371 + c_phi * t375, t425,
+            t343 + parameters[35] * t344 - parameters[34] * t346 - parameters[38] * t346
+                + parameters[39] * t344,
+            t364
+                - (parameters[34] * t344 + parameters[35] * t346 + parameters[38] * t344
+                    + parameters[39] * t346),
+            t404,
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.

@@ -222,90 +222,89 @@ impl Planar4Prr {
     ///
     /// Output: 12.
     ///
-    /// 162 operations (74 additions, 88 multiplications, 0 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 165 intermediates.
+    /// 154 operations (70 additions, 84 multiplications, 0 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 157 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t19 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t19, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t19);
-        let t24 = t9 + t5;
-        let c23_leg1 = 0.7071067811865476 * t2;
-        let s3_leg1 = c23_leg1 * minus_s2_leg1 - 1.4705882352941178 * (t6 * t24);
-        let minus_s23_leg1 = 0.7071067811865476 * t6;
-        let c3_leg1 = 1.4705882352941178 * (t2 * t24) + minus_s23_leg1 * minus_s2_leg1;
-        let t51 = pose[0] - t3 + 0.21213203435596426;
-        let t53 = pose[1] + t7 - 0.21213203435596426;
-        let t54 = t51 + t53;
-        let t63 = 8.650519031141869
-            * (0.5 * (t54 * t54) - (t51 * t51 + t53 * t53 - 0.1156));
-        ::overact::guard::reach(t63, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t63);
-        let t68 = t53 - t51;
-        let c3_leg2 = c23_leg1 * minus_s2_leg2 - 1.4705882352941178 * (t6 * t68);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t23 = 0.7071067811865476 * (t19 - t21);
+        let t30 = 8.650519031141869 * (t23 * t23 - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
+        let t35 = t21 + t19;
+        let c23_leg1 = 0.7071067811865476 * t6;
+        let s3_leg1 = c23_leg1 * minus_s2_leg1 - 1.4705882352941178 * (t2 * t35);
+        let minus_s23_leg1 = 0.7071067811865476 * t2;
+        let c3_leg1 = 1.4705882352941178 * (t6 * t35) + minus_s23_leg1 * minus_s2_leg1;
+        let t61 = 0.7071067811865476 * t20;
+        let t68 = 8.650519031141869 * (t61 * t61 - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t68, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t68);
+        let c3_leg2 = c23_leg1 * minus_s2_leg2 - 1.4705882352941178 * (t2 * t18);
         let minus_s3_leg2 = minus_s23_leg1 * minus_s2_leg2
-            + 1.4705882352941178 * (t2 * t68);
-        let t93 = pose[0] - t7 + 0.21213203435596426;
-        let t95 = pose[1] - t3 + 0.21213203435596426;
-        let t96 = t93 - t95;
-        let t105 = 8.650519031141869
-            * (0.5 * (t96 * t96) - (t93 * t93 + t95 * t95 - 0.1156));
-        ::overact::guard::reach(t105, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t105);
-        let t110 = t93 + t95;
-        let minus_s3_leg3 = c23_leg1 * minus_s2_leg3 + 1.4705882352941178 * (t6 * t110);
-        let c3_leg3 = 1.4705882352941178 * (t2 * t110) - minus_s23_leg1 * minus_s2_leg3;
-        let t135 = pose[0] + t3 - 0.21213203435596426;
-        let t137 = pose[1] - t7 + 0.21213203435596426;
-        let t138 = t135 + t137;
-        let t147 = 8.650519031141869
-            * (0.5 * (t138 * t138) - (t135 * t135 + t137 * t137 - 0.1156));
-        ::overact::guard::reach(t147, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t147);
-        let t152 = t135 - t137;
-        let s3_leg4 = minus_s23_leg1 * minus_s2_leg4 + 1.4705882352941178 * (t2 * t152);
-        let c3_leg4 = 1.4705882352941178 * (t6 * t152) - c23_leg1 * minus_s2_leg4;
+            + 1.4705882352941178 * (t6 * t18);
+        let t96 = 0.7071067811865476 * t10;
+        let t103 = 8.650519031141869 * (t96 * t96 - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t103, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t103);
+        let minus_s3_leg3 = c23_leg1 * minus_s2_leg3 + 1.4705882352941178 * (t2 * t14);
+        let c3_leg3 = 1.4705882352941178 * (t6 * t14) - minus_s23_leg1 * minus_s2_leg3;
+        let t132 = 0.7071067811865476 * (t12 + t16);
+        let t139 = 8.650519031141869 * (t132 * t132 - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t139, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t139);
+        let t144 = t12 - t16;
+        let s3_leg4 = minus_s23_leg1 * minus_s2_leg4 + 1.4705882352941178 * (t6 * t144);
+        let c3_leg4 = 1.4705882352941178 * (t2 * t144) - c23_leg1 * minus_s2_leg4;
         Ok([
-            0.7071067811865476 * t10 + 0.34 * minus_s2_leg1,
+            t23 + 0.34 * minus_s2_leg1,
             ::overact::math::atan2(
-                0.6470588235292614 * minus_s2_leg1 + 1.5856663304348126 * t24,
-                0.7624400821657583 * minus_s2_leg1 - 1.345704946894501 * t24,
+                0.6470588235292614 * minus_s2_leg1 + 1.5856663304348126 * t35,
+                0.7624400821657583 * minus_s2_leg1 - 1.345704946894501 * t35,
             ) + 4.008668472301664,
             ::overact::math::atan2(
                 0.08158687040371294 * s3_leg1 - 0.9966662342919659 * c3_leg1,
                 0.08158687040371294 * c3_leg1 + 0.9966662342919659 * s3_leg1,
             ) - 4.794066635699119,
-            -(0.7071067811865476 * t54 - 0.34 * minus_s2_leg2),
+            -(t61 - 0.34 * minus_s2_leg2),
             ::overact::math::atan2(
-                0.6470588235292607 * minus_s2_leg2 + 1.5856663304348138 * t68,
-                0.7624400821657589 * minus_s2_leg2 - 1.3457049468944997 * t68,
+                0.6470588235292607 * minus_s2_leg2 + 1.5856663304348138 * t18,
+                0.7624400821657589 * minus_s2_leg2 - 1.3457049468944997 * t18,
             ) + 4.008668472301665,
             ::overact::math::atan2(
                 0.08158687040371287 * c3_leg2 - 0.9966662342919659 * minus_s3_leg2,
                 0.9966662342919659 * c3_leg2 + 0.08158687040371287 * minus_s3_leg2,
             ) - 6.364862962494016,
-            0.7071067811865476 * t96 + 0.34 * minus_s2_leg3,
+            t96 + 0.34 * minus_s2_leg3,
             ::overact::math::atan2(
-                0.6470588235292607 * minus_s2_leg3 - 1.5856663304348138 * t110,
-                1.3457049468944997 * t110 + 0.7624400821657589 * minus_s2_leg3,
+                0.6470588235292607 * minus_s2_leg3 - 1.5856663304348138 * t14,
+                1.3457049468944997 * t14 + 0.7624400821657589 * minus_s2_leg3,
             ) + 4.008668472301665,
             ::overact::math::atan2(
                 0.08158687040371282 * minus_s3_leg3 + 0.9966662342919659 * c3_leg3,
                 0.9966662342919659 * minus_s3_leg3 - 0.08158687040371282 * c3_leg3,
             ) - 7.935659289288912,
-            0.7071067811865476 * t138 + 0.34 * minus_s2_leg4,
+            t132 + 0.34 * minus_s2_leg4,
             ::overact::math::atan2(
-                0.6470588235292607 * minus_s2_leg4 + 1.5856663304348138 * t152,
-                0.7624400821657589 * minus_s2_leg4 - 1.3457049468944997 * t152,
+                0.6470588235292607 * minus_s2_leg4 + 1.5856663304348138 * t144,
+                0.7624400821657589 * minus_s2_leg4 - 1.3457049468944997 * t144,
             ) + 4.008668472301665,
             ::overact::math::atan2(
                 -(0.9966662342919659 * s3_leg4 + 0.08158687040371275 * c3_leg4),
@@ -320,46 +319,44 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 68 operations (38 additions, 30 multiplications, 0 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 70 intermediates.
+    /// 61 operations (35 additions, 26 multiplications, 0 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 63 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
         let t9 = pose[0] + t7 - 0.21213203435596426;
-        let t10 = t5 - t9;
-        let t19 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t19, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t19);
-        let t24 = pose[0] - t3 + 0.21213203435596426;
-        let t26 = pose[1] + t7 - 0.21213203435596426;
-        let t27 = t24 + t26;
-        let t36 = 8.650519031141869
-            * (0.5 * (t27 * t27) - (t24 * t24 + t26 * t26 - 0.1156));
-        ::overact::guard::reach(t36, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t36);
-        let t41 = pose[0] - t7 + 0.21213203435596426;
-        let t43 = pose[1] - t3 + 0.21213203435596426;
-        let t44 = t41 - t43;
-        let t53 = 8.650519031141869
-            * (0.5 * (t44 * t44) - (t41 * t41 + t43 * t43 - 0.1156));
-        ::overact::guard::reach(t53, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t53);
-        let t58 = pose[0] + t3 - 0.21213203435596426;
-        let t60 = pose[1] - t7 + 0.21213203435596426;
-        let t61 = t58 + t60;
-        let t70 = 8.650519031141869
-            * (0.5 * (t61 * t61) - (t58 * t58 + t60 * t60 - 0.1156));
-        ::overact::guard::reach(t70, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t70);
+        let t11 = pose[1] - t3 + 0.21213203435596426;
+        let t12 = t9 + t11;
+        let t13 = t12 - t5;
+        let t15 = pose[0] - t7 + 0.21213203435596426;
+        let t17 = pose[1] - t7 + 0.21213203435596426;
+        let t18 = t5 - t17;
+        let t19 = t9 - t18;
+        let t20 = t15 + t19;
+        let t21 = t20 - t17;
+        let t23 = 0.7071067811865476 * (t13 - t21);
+        let t30 = 8.650519031141869 * (t23 * t23 - (t21 * t21 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
+        let t34 = 0.7071067811865476 * t20;
+        let t41 = 8.650519031141869 * (t34 * t34 - (t15 * t15 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t41, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t41);
+        let t45 = 0.7071067811865476 * t18;
+        let t52 = 8.650519031141869 * (t45 * t45 - (t5 * t5 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t52, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t52);
+        let t56 = 0.7071067811865476 * t12;
+        let t63 = 8.650519031141869 * (t56 * t56 - (t9 * t9 + t11 * t11 - 0.1156));
+        ::overact::guard::reach(t63, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t63);
         Ok([
-            0.7071067811865476 * t10 + 0.34 * minus_s2_leg1,
-            -(0.7071067811865476 * t27 - 0.34 * minus_s2_leg2),
-            0.7071067811865476 * t44 + 0.34 * minus_s2_leg3,
-            0.7071067811865476 * t61 + 0.34 * minus_s2_leg4,
+            t23 + 0.34 * minus_s2_leg1, -(t34 - 0.34 * minus_s2_leg2), t45 + 0.34 * minus_s2_leg3,
+            t56 + 0.34 * minus_s2_leg4,
         ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -369,65 +366,67 @@ impl Planar4Prr {
     ///
     /// Output: 4 x 3.
     ///
-    /// 100 operations (50 additions, 46 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 94 intermediates.
+    /// 96 operations (46 additions, 46 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 90 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
         let t7 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t11 = 1.4705882352941178 * (t5 + t9);
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t12 = pose[1] - t3 + 0.21213203435596426;
+        let t13 = t10 - t12;
+        let t14 = t5 - t9;
+        let t16 = pose[0] + t7 - 0.21213203435596426;
+        let t17 = t16 - t14;
+        let t18 = t13 + t17;
+        let t19 = t18 - t9;
+        let t20 = t17 - t13;
+        let t21 = t20 + t5;
+        let t23 = 1.4705882352941178 * (t19 + t21);
+        let t24 = t21 - t19;
+        let t32 = 8.650519031141869
+            * (0.5 * (t24 * t24) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t32, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = (t11 + t22) * t24;
-        let t27 = pose[0] - t7 + 0.21213203435596426;
-        let t29 = pose[1] + t3 - 0.21213203435596426;
-        let t30 = t27 + t29;
-        let t38 = 8.650519031141869
-            * (0.5 * (t30 * t30) - (t27 * t27 + t29 * t29 - 0.1156));
-        ::overact::guard::reach(t38, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t38);
+        let t34 = 0.7071067811865476 * minus_s2_leg1;
+        let t36 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t23 + t34) * t36;
+        let t45 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t45, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t45);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t40 = 0.7071067811865476 * minus_s2_leg2;
-        let t42 = 1.4705882352941178 * (t29 - t27);
-        let t44 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t40 - t42) * t44;
-        let t47 = pose[0] - t3 + 0.21213203435596426;
-        let t49 = pose[1] - t7 + 0.21213203435596426;
-        let t51 = 1.4705882352941178 * (t47 + t49);
-        let t52 = t47 - t49;
-        let t60 = 8.650519031141869
-            * (0.5 * (t52 * t52) - (t47 * t47 + t49 * t49 - 0.1156));
+        let t47 = 0.7071067811865476 * minus_s2_leg2;
+        let t48 = 1.4705882352941178 * t20;
+        let t50 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t47 - t48) * t50;
+        let t52 = 1.4705882352941178 * t10;
+        let t60 = 8.650519031141869 * (0.5 * (t14 * t14) - (t5 * t5 + t9 * t9 - 0.1156));
         ::overact::guard::reach(t60, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t60);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
         let t62 = 0.7071067811865476 * minus_s2_leg3;
         let t64 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (t51 - t62) * t64;
-        let t67 = pose[0] + t7 - 0.21213203435596426;
-        let t69 = pose[1] - t3 + 0.21213203435596426;
-        let t71 = 1.4705882352941178 * (t67 - t69);
-        let t72 = t67 + t69;
-        let t80 = 8.650519031141869
-            * (0.5 * (t72 * t72) - (t67 * t67 + t69 * t69 - 0.1156));
-        ::overact::guard::reach(t80, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t80);
+        let minus_g1_vx_leg3 = (t52 - t62) * t64;
+        let t67 = 1.4705882352941178 * (t16 - t12);
+        let t68 = t16 + t12;
+        let t76 = 8.650519031141869
+            * (0.5 * (t68 * t68) - (t16 * t16 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t76, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t76);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t82 = 0.7071067811865476 * minus_s2_leg4;
-        let t84 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = (t71 - t82) * t84;
-        let g1_vy_leg1 = (t22 - t11) * t24;
-        let minus_g1_vy_leg2 = (t40 + t42) * t44;
-        let minus_g1_vy_leg3 = (t62 + t51) * t64;
-        let g1_vy_leg4 = (t82 + t71) * t84;
+        let t78 = 0.7071067811865476 * minus_s2_leg4;
+        let t80 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t67 - t78) * t80;
+        let g1_vy_leg1 = (t34 - t23) * t36;
+        let minus_g1_vy_leg2 = (t47 + t48) * t50;
+        let minus_g1_vy_leg3 = (t62 + t52) * t64;
+        let g1_vy_leg4 = (t78 + t67) * t80;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
@@ -495,114 +494,116 @@ impl Planar4Prr {
     ///
     /// Output: 3 x 4.
     ///
-    /// 216 operations (96 additions, 113 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 210 intermediates.
+    /// 212 operations (92 additions, 113 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 206 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
         let t7 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t11 = 1.4705882352941178 * (t5 + t9);
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t12 = pose[1] - t3 + 0.21213203435596426;
+        let t13 = t10 - t12;
+        let t14 = t5 - t9;
+        let t16 = pose[0] + t7 - 0.21213203435596426;
+        let t17 = t16 - t14;
+        let t18 = t13 + t17;
+        let t19 = t18 - t9;
+        let t20 = t17 - t13;
+        let t21 = t20 + t5;
+        let t23 = 1.4705882352941178 * (t19 + t21);
+        let t24 = t21 - t19;
+        let t32 = 8.650519031141869
+            * (0.5 * (t24 * t24) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t32, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = (t11 + t22) * t24;
-        let g1_vy_leg1 = (t22 - t11) * t24;
+        let t34 = 0.7071067811865476 * minus_s2_leg1;
+        let t36 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t23 + t34) * t36;
+        let g1_vy_leg1 = (t34 - t23) * t36;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
-        let t33 = pose[0] - t7 + 0.21213203435596426;
-        let t35 = pose[1] + t3 - 0.21213203435596426;
-        let t36 = t33 + t35;
-        let t44 = 8.650519031141869
-            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
-        ::overact::guard::reach(t44, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        let t51 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t51, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t46 = 0.7071067811865476 * minus_s2_leg2;
-        let t48 = 1.4705882352941178 * (t35 - t33);
-        let t50 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t46 - t48) * t50;
-        let minus_g1_vy_leg2 = (t46 + t48) * t50;
+        let t53 = 0.7071067811865476 * minus_s2_leg2;
+        let t54 = 1.4705882352941178 * t20;
+        let t56 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t53 - t54) * t56;
+        let minus_g1_vy_leg2 = (t53 + t54) * t56;
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t60 = pose[0] - t3 + 0.21213203435596426;
-        let t62 = pose[1] - t7 + 0.21213203435596426;
-        let t64 = 1.4705882352941178 * (t60 + t62);
-        let t65 = t60 - t62;
-        let t73 = 8.650519031141869
-            * (0.5 * (t65 * t65) - (t60 * t60 + t62 * t62 - 0.1156));
+        let t65 = 1.4705882352941178 * t10;
+        let t73 = 8.650519031141869 * (0.5 * (t14 * t14) - (t5 * t5 + t9 * t9 - 0.1156));
         ::overact::guard::reach(t73, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t73);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
         let t75 = 0.7071067811865476 * minus_s2_leg3;
         let t77 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (t64 - t75) * t77;
-        let minus_g1_vy_leg3 = (t75 + t64) * t77;
+        let minus_g1_vx_leg3 = (t65 - t75) * t77;
+        let minus_g1_vy_leg3 = (t75 + t65) * t77;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
-        let t87 = pose[0] + t7 - 0.21213203435596426;
-        let t89 = pose[1] - t3 + 0.21213203435596426;
-        let t91 = 1.4705882352941178 * (t87 - t89);
-        let t92 = t87 + t89;
-        let t100 = 8.650519031141869
-            * (0.5 * (t92 * t92) - (t87 * t87 + t89 * t89 - 0.1156));
-        ::overact::guard::reach(t100, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t100);
+        let t87 = 1.4705882352941178 * (t16 - t12);
+        let t88 = t16 + t12;
+        let t96 = 8.650519031141869
+            * (0.5 * (t88 * t88) - (t16 * t16 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t96, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t96);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t102 = 0.7071067811865476 * minus_s2_leg4;
-        let t104 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = (t91 - t102) * t104;
-        let g1_vy_leg4 = (t102 + t91) * t104;
+        let t98 = 0.7071067811865476 * minus_s2_leg4;
+        let t100 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t87 - t98) * t100;
+        let g1_vy_leg4 = (t98 + t87) * t100;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t112 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t108 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t119 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t115 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t119, 3.440476190476192, "actuators")?;
-        let t120 = 1.0 / t119;
-        let t121 = t112 * t120;
-        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        ::overact::guard::platform(t115, 3.440476190476192, "actuators")?;
+        let t116 = 1.0 / t115;
+        let t117 = t108 * t116;
+        let t140 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t121;
-        let t154 = t144 * t120;
-        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t142 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t140 * t117;
+        let t150 = t140 * t116;
+        let t152 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t144 * t154;
-        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
+            - t140 * t150;
+        ::overact::guard::platform(t152, 3.440476190476192, "actuators")?;
+        let t153 = 1.0 / t152;
+        let t154 = t142 * t153;
+        let t156 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t108 * t117
+            - t142 * t154;
+        ::overact::guard::platform(t156, 0.02560000000000001, "actuators")?;
         let t157 = 1.0 / t156;
-        let t158 = t146 * t157;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t112 * t121
-            - t146 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t165 = g1_vy_leg1 + minus_g1_vx_leg1 * t154;
-        let t168 = t161 * (g1_wz_leg1 - minus_g1_vx_leg1 * t121 - t158 * t165);
-        let t173 = t157 * t165 - t158 * t168;
-        let t180 = minus_g1_vx_leg2 * t154 - minus_g1_vy_leg2;
-        let t183 = t161 * (g1_wz_leg2 - minus_g1_vx_leg2 * t121 - t158 * t180);
-        let t188 = t157 * t180 - t158 * t183;
-        let t195 = minus_g1_vx_leg3 * t154 - minus_g1_vy_leg3;
-        let t198 = t161 * (g1_wz_leg3 - minus_g1_vx_leg3 * t121 - t158 * t195);
-        let t203 = t157 * t195 - t158 * t198;
-        let t210 = g1_vy_leg4 + minus_g1_vx_leg4 * t154;
-        let t213 = t161 * (g1_wz_leg4 - minus_g1_vx_leg4 * t121 - t158 * t210);
-        let t218 = t157 * t210 - t158 * t213;
+        let t161 = g1_vy_leg1 + minus_g1_vx_leg1 * t150;
+        let t164 = t157 * (g1_wz_leg1 - minus_g1_vx_leg1 * t117 - t154 * t161);
+        let t169 = t153 * t161 - t154 * t164;
+        let t176 = minus_g1_vx_leg2 * t150 - minus_g1_vy_leg2;
+        let t179 = t157 * (g1_wz_leg2 - minus_g1_vx_leg2 * t117 - t154 * t176);
+        let t184 = t153 * t176 - t154 * t179;
+        let t191 = minus_g1_vx_leg3 * t150 - minus_g1_vy_leg3;
+        let t194 = t157 * (g1_wz_leg3 - minus_g1_vx_leg3 * t117 - t154 * t191);
+        let t199 = t153 * t191 - t154 * t194;
+        let t206 = g1_vy_leg4 + minus_g1_vx_leg4 * t150;
+        let t209 = t157 * (g1_wz_leg4 - minus_g1_vx_leg4 * t117 - t154 * t206);
+        let t214 = t153 * t206 - t154 * t209;
         Ok([
             [
-                t121 * t168 - (minus_g1_vx_leg1 * t120 + t154 * t173),
-                t121 * t183 - (minus_g1_vx_leg2 * t120 + t154 * t188),
-                t121 * t198 - (minus_g1_vx_leg3 * t120 + t154 * t203),
-                t121 * t213 - (minus_g1_vx_leg4 * t120 + t154 * t218),
+                t117 * t164 - (minus_g1_vx_leg1 * t116 + t150 * t169),
+                t117 * t179 - (minus_g1_vx_leg2 * t116 + t150 * t184),
+                t117 * t194 - (minus_g1_vx_leg3 * t116 + t150 * t199),
+                t117 * t209 - (minus_g1_vx_leg4 * t116 + t150 * t214),
             ],
-            [t173, t188, t203, t218],
-            [t168, t183, t198, t213],
+            [t169, t184, t199, t214],
+            [t164, t179, t194, t209],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -781,7 +782,7 @@ impl Planar4Prr {
     ///
     /// Output: 12.
     ///
-    /// 130 operations (66 additions, 60 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 124 intermediates.
+    /// 126 operations (62 additions, 60 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 120 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -790,81 +791,83 @@ impl Planar4Prr {
         twist: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t22 = 1.4705882352941178 * (t9 + t5);
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = (t20 - t22) * t24;
-        let t26 = t7 * twist[2];
-        let t27 = twist[1] + t26;
-        let minus_g1_vx_leg1 = (t22 + t20) * t24;
-        let t31 = t3 * twist[2];
-        let t32 = twist[0] - t31;
-        let rate_1_leg1 = g1_vy_leg1 * t27 - minus_g1_vx_leg1 * t32;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let rate_2_leg1 = g2_vx_leg1 * t32 + g2_vx_leg1 * t27;
-        let t41 = pose[0] - t3 + 0.21213203435596426;
-        let t43 = pose[1] + t7 - 0.21213203435596426;
-        let t44 = t41 + t43;
-        let t52 = 8.650519031141869
-            * (0.5 * (t44 * t44) - (t41 * t41 + t43 * t43 - 0.1156));
-        ::overact::guard::reach(t52, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t52);
+        let t32 = 0.7071067811865476 * minus_s2_leg1;
+        let t34 = 1.4705882352941178 * (t21 + t19);
+        let t36 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t32 - t34) * t36;
+        let t38 = t3 * twist[2];
+        let t39 = twist[1] + t38;
+        let minus_g1_vx_leg1 = (t34 + t32) * t36;
+        let t43 = t7 * twist[2];
+        let t44 = twist[0] - t43;
+        let rate_1_leg1 = g1_vy_leg1 * t39 - minus_g1_vx_leg1 * t44;
+        let g2_vx_leg1 = 2.079725827019258 * t36;
+        let rate_2_leg1 = g2_vx_leg1 * t44 + g2_vx_leg1 * t39;
+        let t59 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t59, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t59);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t54 = 0.7071067811865476 * minus_s2_leg2;
-        let t56 = 1.4705882352941178 * (t43 - t41);
-        let t58 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t54 - t56) * t58;
-        let t60 = twist[0] - t26;
-        let minus_g1_vy_leg2 = (t54 + t56) * t58;
-        let t64 = twist[1] - t31;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t60 + minus_g1_vy_leg2 * t64;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t58;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t64 - minus_g2_vx_leg2 * t60;
-        let t73 = pose[0] - t7 + 0.21213203435596426;
-        let t75 = pose[1] - t3 + 0.21213203435596426;
-        let t77 = 1.4705882352941178 * (t73 + t75);
-        let t78 = t73 - t75;
-        let t86 = 8.650519031141869
-            * (0.5 * (t78 * t78) - (t73 * t73 + t75 * t75 - 0.1156));
+        let t61 = 0.7071067811865476 * minus_s2_leg2;
+        let t62 = 1.4705882352941178 * t18;
+        let t64 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t61 - t62) * t64;
+        let t66 = twist[0] - t38;
+        let minus_g1_vy_leg2 = (t61 + t62) * t64;
+        let t70 = twist[1] - t43;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t66 + minus_g1_vy_leg2 * t70;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t64;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t70 - minus_g2_vx_leg2 * t66;
+        let t78 = 1.4705882352941178 * t14;
+        let t86 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
         ::overact::guard::reach(t86, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t86);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
         let t88 = 0.7071067811865476 * minus_s2_leg3;
         let t90 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (t77 - t88) * t90;
-        let t92 = twist[0] + t31;
-        let minus_g1_vy_leg3 = (t88 + t77) * t90;
-        let t96 = twist[1] - t26;
+        let minus_g1_vx_leg3 = (t78 - t88) * t90;
+        let t92 = twist[0] + t43;
+        let minus_g1_vy_leg3 = (t88 + t78) * t90;
+        let t96 = twist[1] - t38;
         let minus_rate_1_leg3 = minus_g1_vx_leg3 * t92 + minus_g1_vy_leg3 * t96;
         let minus_g2_vx_leg3 = 2.079725827019258 * t90;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * t92 + minus_g2_vx_leg3 * t96;
-        let t105 = pose[0] + t3 - 0.21213203435596426;
-        let t107 = pose[1] - t7 + 0.21213203435596426;
-        let t108 = t105 + t107;
-        let t116 = 8.650519031141869
-            * (0.5 * (t108 * t108) - (t105 * t105 + t107 * t107 - 0.1156));
-        ::overact::guard::reach(t116, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t116);
+        let t104 = t12 + t16;
+        let t112 = 8.650519031141869
+            * (0.5 * (t104 * t104) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t112, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t112);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t118 = 0.7071067811865476 * minus_s2_leg4;
-        let t120 = 1.4705882352941178 * (t105 - t107);
-        let t122 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = (t118 + t120) * t122;
-        let t124 = twist[1] + t31;
-        let minus_g1_vx_leg4 = (t120 - t118) * t122;
-        let t128 = twist[0] + t26;
-        let rate_1_leg4 = g1_vy_leg4 * t124 - minus_g1_vx_leg4 * t128;
-        let g2_vx_leg4 = 2.079725827019258 * t122;
-        let rate_2_leg4 = g2_vx_leg4 * t128 - g2_vx_leg4 * t124;
+        let t114 = 0.7071067811865476 * minus_s2_leg4;
+        let t116 = 1.4705882352941178 * (t12 - t16);
+        let t118 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t114 + t116) * t118;
+        let t120 = twist[1] + t43;
+        let minus_g1_vx_leg4 = (t116 - t114) * t118;
+        let t124 = twist[0] + t38;
+        let rate_1_leg4 = g1_vy_leg4 * t120 - minus_g1_vx_leg4 * t124;
+        let g2_vx_leg4 = 2.079725827019258 * t118;
+        let rate_2_leg4 = g2_vx_leg4 * t124 - g2_vx_leg4 * t120;
         Ok([
             rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2, rate_2_leg2,
             twist[2] - rate_2_leg2, -minus_rate_1_leg3, -minus_rate_2_leg3,
@@ -880,7 +883,7 @@ impl Planar4Prr {
     ///
     /// Output: 12.
     ///
-    /// 186 operations (94 additions, 88 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 180 intermediates.
+    /// 179 operations (87 additions, 88 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 173 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -890,98 +893,102 @@ impl Planar4Prr {
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 1.0 / minus_s2_leg1;
-        let t21 = 0.7071067811865476 * minus_s2_leg1;
-        let t22 = t9 + t5;
-        let t23 = 1.4705882352941178 * t22;
-        let t25 = t7 * acceleration[2];
-        let t27 = t3 * twist[2];
-        let t28 = twist[2] * t27;
-        let t29 = acceleration[1] + t25 - t28;
-        let t32 = t3 * acceleration[2];
-        let t34 = t7 * twist[2];
-        let t35 = twist[2] * t34;
-        let t36 = acceleration[0] - t32 - t35;
-        let g2_vx_leg1 = 2.079725827019258 * t20;
-        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t27) + g2_vx_leg1 * (twist[1] + t34);
-        let t45 = rate_2_leg1 * rate_2_leg1;
-        let rate_dot_1_leg1 = t20 * ((t21 - t23) * t29 - (t23 + t21) * t36 - 0.34 * t45);
-        let rate_dot_2_leg1 = 2.9411764705882355 * t20
-            * (0.7071067811865476 * (t36 + t29) + 0.7071067811865476 * t22 * t45);
-        let t58 = pose[0] - t3 + 0.21213203435596426;
-        let t60 = pose[1] + t7 - 0.21213203435596426;
-        let t61 = t58 + t60;
-        let t69 = 8.650519031141869
-            * (0.5 * (t61 * t61) - (t58 * t58 + t60 * t60 - 0.1156));
-        ::overact::guard::reach(t69, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t69);
+        let t32 = 1.0 / minus_s2_leg1;
+        let t33 = 0.7071067811865476 * minus_s2_leg1;
+        let t34 = t21 + t19;
+        let t35 = 1.4705882352941178 * t34;
+        let t37 = t7 * acceleration[2];
+        let t39 = t3 * twist[2];
+        let t40 = twist[2] * t39;
+        let t41 = acceleration[0] + t37 + t40;
+        let t42 = t3 * acceleration[2];
+        let t44 = t7 * twist[2];
+        let t45 = twist[2] * t44;
+        let t46 = acceleration[1] - t42 + t45;
+        let t47 = t41 + t46;
+        let t49 = acceleration[1] + t37 + t40;
+        let t50 = t47 - t49;
+        let t52 = acceleration[1] - t37 - t40;
+        let t53 = t50 - t52;
+        let t54 = t41 - t53;
+        let t58 = acceleration[0] + t42 - t45;
+        let t59 = t49 - t58;
+        let t60 = t46 - t59;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t44) + g2_vx_leg1 * (twist[1] + t39);
+        let t69 = rate_2_leg1 * rate_2_leg1;
+        let rate_dot_1_leg1 = t32 * ((t33 - t35) * t54 - (t35 + t33) * t60 - 0.34 * t69);
+        let rate_dot_2_leg1 = 2.9411764705882355 * t32
+            * (0.7071067811865476 * (t60 + t54) + 0.7071067811865476 * t34 * t69);
+        let t88 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t88, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t71 = 1.0 / minus_s2_leg2;
-        let t72 = 0.7071067811865476 * minus_s2_leg2;
-        let t73 = t60 - t58;
-        let t74 = 1.4705882352941178 * t73;
-        let t77 = acceleration[0] - t25 + t28;
-        let t81 = acceleration[1] - t32 - t35;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t71;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t27)
-            - minus_g2_vx_leg2 * (twist[0] - t34);
-        let t90 = rate_2_leg2 * rate_2_leg2;
-        let minus_rate_dot_1_leg2 = t71
-            * ((t72 - t74) * t77 + (t72 + t74) * t81 + 0.34 * t90);
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t71
-            * (0.7071067811865476 * (t77 - t81) - 0.7071067811865476 * t73 * t90);
-        let t103 = pose[0] - t7 + 0.21213203435596426;
-        let t105 = pose[1] - t3 + 0.21213203435596426;
-        let t106 = t103 - t105;
-        let t114 = 8.650519031141869
-            * (0.5 * (t106 * t106) - (t103 * t103 + t105 * t105 - 0.1156));
-        ::overact::guard::reach(t114, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t114);
+        let t90 = 1.0 / minus_s2_leg2;
+        let t91 = 0.7071067811865476 * minus_s2_leg2;
+        let t92 = 1.4705882352941178 * t18;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t90;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t44)
+            - minus_g2_vx_leg2 * (twist[0] - t39);
+        let t104 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_dot_1_leg2 = t90
+            * ((t91 - t92) * t50 + (t91 + t92) * t52 + 0.34 * t104);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t90
+            * (0.7071067811865476 * t53 - 0.7071067811865476 * t18 * t104);
+        let t122 = 8.650519031141869
+            * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t122, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t122);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t116 = 1.0 / minus_s2_leg3;
-        let t117 = t103 + t105;
-        let t118 = 1.4705882352941178 * t117;
-        let t119 = 0.7071067811865476 * minus_s2_leg3;
-        let t122 = acceleration[0] + t32 + t35;
-        let t126 = acceleration[1] - t25 + t28;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t116;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t27)
-            + minus_g2_vx_leg3 * (twist[1] - t34);
-        let t135 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t116
-            * ((t118 - t119) * t122 + (t119 + t118) * t126 + 0.34 * t135);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t116
-            * (0.7071067811865476 * (t122 + t126) + 0.7071067811865476 * t117 * t135);
-        let t148 = pose[0] + t3 - 0.21213203435596426;
-        let t150 = pose[1] - t7 + 0.21213203435596426;
-        let t151 = t148 + t150;
-        let t159 = 8.650519031141869
-            * (0.5 * (t151 * t151) - (t148 * t148 + t150 * t150 - 0.1156));
-        ::overact::guard::reach(t159, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t159);
+        let t124 = 1.0 / minus_s2_leg3;
+        let t125 = 1.4705882352941178 * t14;
+        let t126 = 0.7071067811865476 * minus_s2_leg3;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t124;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t44)
+            + minus_g2_vx_leg3 * (twist[1] - t39);
+        let t138 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t124
+            * ((t125 - t126) * t41 + (t126 + t125) * t46 + 0.34 * t138);
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t124
+            * (0.7071067811865476 * t47 + 0.7071067811865476 * t14 * t138);
+        let t149 = t12 + t16;
+        let t157 = 8.650519031141869
+            * (0.5 * (t149 * t149) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t157, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t157);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t161 = 1.0 / minus_s2_leg4;
-        let t162 = t148 - t150;
-        let t163 = 1.4705882352941178 * t162;
-        let t164 = 0.7071067811865476 * minus_s2_leg4;
-        let t167 = acceleration[0] + t25 - t28;
-        let t171 = acceleration[1] + t32 + t35;
-        let g2_vx_leg4 = 2.079725827019258 * t161;
-        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t34) - g2_vx_leg4 * (twist[1] + t27);
-        let t180 = rate_2_leg4 * rate_2_leg4;
-        let minus_rate_dot_1_leg4 = t161
-            * ((t163 - t164) * t167 - (t164 + t163) * t171 + 0.34 * t180);
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t161
-            * (0.7071067811865476 * (t171 - t167) - 0.7071067811865476 * t162 * t180);
+        let t159 = 1.0 / minus_s2_leg4;
+        let t160 = t12 - t16;
+        let t161 = 1.4705882352941178 * t160;
+        let t162 = 0.7071067811865476 * minus_s2_leg4;
+        let g2_vx_leg4 = 2.079725827019258 * t159;
+        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t39) - g2_vx_leg4 * (twist[1] + t44);
+        let t174 = rate_2_leg4 * rate_2_leg4;
+        let minus_rate_dot_1_leg4 = t159
+            * ((t161 - t162) * t58 - (t162 + t161) * t49 + 0.34 * t174);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t159
+            * (0.7071067811865476 * t59 - 0.7071067811865476 * t160 * t174);
         Ok([
             rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
@@ -997,7 +1004,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 191 operations (87 additions, 97 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 194 intermediates.
+    /// 187 operations (83 additions, 97 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 190 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1007,99 +1014,101 @@ impl Planar4Prr {
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
         let t7 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t11 = 1.4705882352941178 * (t5 + t9);
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t12 = pose[1] - t3 + 0.21213203435596426;
+        let t13 = t10 - t12;
+        let t14 = t5 - t9;
+        let t16 = pose[0] + t7 - 0.21213203435596426;
+        let t17 = t16 - t14;
+        let t18 = t13 + t17;
+        let t19 = t18 - t9;
+        let t20 = t17 - t13;
+        let t21 = t20 + t5;
+        let t23 = 1.4705882352941178 * (t19 + t21);
+        let t24 = t21 - t19;
+        let t32 = 8.650519031141869
+            * (0.5 * (t24 * t24) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t32, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = (t11 + t22) * t24;
-        let g1_vy_leg1 = (t22 - t11) * t24;
+        let t34 = 0.7071067811865476 * minus_s2_leg1;
+        let t36 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t23 + t34) * t36;
+        let g1_vy_leg1 = (t34 - t23) * t36;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
-        let t33 = pose[0] - t7 + 0.21213203435596426;
-        let t35 = pose[1] + t3 - 0.21213203435596426;
-        let t36 = t33 + t35;
-        let t44 = 8.650519031141869
-            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
-        ::overact::guard::reach(t44, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        let t51 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t51, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t46 = 0.7071067811865476 * minus_s2_leg2;
-        let t48 = 1.4705882352941178 * (t35 - t33);
-        let t50 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t46 - t48) * t50;
-        let minus_g1_vy_leg2 = (t46 + t48) * t50;
+        let t53 = 0.7071067811865476 * minus_s2_leg2;
+        let t54 = 1.4705882352941178 * t20;
+        let t56 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t53 - t54) * t56;
+        let minus_g1_vy_leg2 = (t53 + t54) * t56;
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t60 = pose[0] - t3 + 0.21213203435596426;
-        let t62 = pose[1] - t7 + 0.21213203435596426;
-        let t64 = 1.4705882352941178 * (t60 + t62);
-        let t65 = t60 - t62;
-        let t73 = 8.650519031141869
-            * (0.5 * (t65 * t65) - (t60 * t60 + t62 * t62 - 0.1156));
+        let t65 = 1.4705882352941178 * t10;
+        let t73 = 8.650519031141869 * (0.5 * (t14 * t14) - (t5 * t5 + t9 * t9 - 0.1156));
         ::overact::guard::reach(t73, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t73);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
         let t75 = 0.7071067811865476 * minus_s2_leg3;
         let t77 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (t64 - t75) * t77;
-        let minus_g1_vy_leg3 = (t75 + t64) * t77;
+        let minus_g1_vx_leg3 = (t65 - t75) * t77;
+        let minus_g1_vy_leg3 = (t75 + t65) * t77;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
-        let t87 = pose[0] + t7 - 0.21213203435596426;
-        let t89 = pose[1] - t3 + 0.21213203435596426;
-        let t91 = 1.4705882352941178 * (t87 - t89);
-        let t92 = t87 + t89;
-        let t100 = 8.650519031141869
-            * (0.5 * (t92 * t92) - (t87 * t87 + t89 * t89 - 0.1156));
-        ::overact::guard::reach(t100, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t100);
+        let t87 = 1.4705882352941178 * (t16 - t12);
+        let t88 = t16 + t12;
+        let t96 = 8.650519031141869
+            * (0.5 * (t88 * t88) - (t16 * t16 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t96, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t96);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t102 = 0.7071067811865476 * minus_s2_leg4;
-        let t104 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = (t91 - t102) * t104;
-        let g1_vy_leg4 = (t102 + t91) * t104;
+        let t98 = 0.7071067811865476 * minus_s2_leg4;
+        let t100 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t87 - t98) * t100;
+        let g1_vy_leg4 = (t98 + t87) * t100;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t112 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t108 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t119 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t115 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t119, 3.440476190476192, "actuators")?;
-        let t120 = 1.0 / t119;
-        let t121 = t112 * t120;
-        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
-            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t121;
-        let t154 = t144 * t120;
-        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t144 * t154;
-        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
-        let t157 = 1.0 / t156;
-        let t158 = t146 * t157;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t112 * t121
-            - t146 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t174 = minus_g1_vx_leg1 * actuator_velocities[0]
+        ::overact::guard::platform(t115, 3.440476190476192, "actuators")?;
+        let t116 = 1.0 / t115;
+        let t117 = t108 * t116;
+        let t131 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t185 = g1_vy_leg1 * actuator_velocities[0]
+        let t147 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t149 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t147 * t117;
+        let t157 = t147 * t116;
+        let t159 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t147 * t157;
+        ::overact::guard::platform(t159, 3.440476190476192, "actuators")?;
+        let t160 = 1.0 / t159;
+        let t161 = t149 * t160;
+        let t170 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t174 * t154;
-        let t187 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t131 * t157;
+        let t172 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t174 * t121 - t158 * t185;
-        let t188 = t187 / t160;
-        let t193 = t157 * t185 - t158 * t188;
-        Ok([t121 * t188 - (t174 * t120 + t154 * t193), t193, t188])
+            + g1_wz_leg4 * actuator_velocities[3] - t131 * t117 - t161 * t170;
+        let t183 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t108 * t117
+            - t149 * t161;
+        ::overact::guard::platform(t183, 0.02560000000000001, "actuators")?;
+        let t184 = t172 / t183;
+        let t189 = t160 * t170 - t161 * t184;
+        Ok([t117 * t184 - (t131 * t116 + t157 * t189), t189, t184])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1110,7 +1119,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 251 operations (111 additions, 133 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 254 intermediates.
+    /// 247 operations (107 additions, 133 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 250 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1121,130 +1130,132 @@ impl Planar4Prr {
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
         let t7 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t11 = 1.4705882352941178 * (t5 + t9);
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t12 = pose[1] - t3 + 0.21213203435596426;
+        let t13 = t10 - t12;
+        let t14 = t5 - t9;
+        let t16 = pose[0] + t7 - 0.21213203435596426;
+        let t17 = t16 - t14;
+        let t18 = t13 + t17;
+        let t19 = t18 - t9;
+        let t20 = t17 - t13;
+        let t21 = t20 + t5;
+        let t23 = 1.4705882352941178 * (t19 + t21);
+        let t24 = t21 - t19;
+        let t32 = 8.650519031141869
+            * (0.5 * (t24 * t24) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t32, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t23 = t11 + t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t23 * t24;
-        let t26 = t22 - t11;
-        let g1_vy_leg1 = t26 * t24;
+        let t34 = 0.7071067811865476 * minus_s2_leg1;
+        let t35 = t23 + t34;
+        let t36 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t35 * t36;
+        let t38 = t34 - t23;
+        let g1_vy_leg1 = t38 * t36;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
-        let t33 = pose[0] - t7 + 0.21213203435596426;
-        let t35 = pose[1] + t3 - 0.21213203435596426;
-        let t36 = t33 + t35;
-        let t44 = 8.650519031141869
-            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
-        ::overact::guard::reach(t44, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        let t51 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t51, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t46 = 0.7071067811865476 * minus_s2_leg2;
-        let t48 = 1.4705882352941178 * (t35 - t33);
-        let t49 = t46 - t48;
-        let t50 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t49 * t50;
-        let t52 = t46 + t48;
-        let minus_g1_vy_leg2 = t52 * t50;
+        let t53 = 0.7071067811865476 * minus_s2_leg2;
+        let t54 = 1.4705882352941178 * t20;
+        let t55 = t53 - t54;
+        let t56 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t55 * t56;
+        let t58 = t53 + t54;
+        let minus_g1_vy_leg2 = t58 * t56;
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t60 = pose[0] - t3 + 0.21213203435596426;
-        let t62 = pose[1] - t7 + 0.21213203435596426;
-        let t64 = 1.4705882352941178 * (t60 + t62);
-        let t65 = t60 - t62;
-        let t73 = 8.650519031141869
-            * (0.5 * (t65 * t65) - (t60 * t60 + t62 * t62 - 0.1156));
+        let t65 = 1.4705882352941178 * t10;
+        let t73 = 8.650519031141869 * (0.5 * (t14 * t14) - (t5 * t5 + t9 * t9 - 0.1156));
         ::overact::guard::reach(t73, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t73);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
         let t75 = 0.7071067811865476 * minus_s2_leg3;
-        let t76 = t64 - t75;
+        let t76 = t65 - t75;
         let t77 = 1.0 / minus_s2_leg3;
         let minus_g1_vx_leg3 = t76 * t77;
-        let t79 = t75 + t64;
+        let t79 = t75 + t65;
         let minus_g1_vy_leg3 = t79 * t77;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
-        let t87 = pose[0] + t7 - 0.21213203435596426;
-        let t89 = pose[1] - t3 + 0.21213203435596426;
-        let t91 = 1.4705882352941178 * (t87 - t89);
-        let t92 = t87 + t89;
-        let t100 = 8.650519031141869
-            * (0.5 * (t92 * t92) - (t87 * t87 + t89 * t89 - 0.1156));
-        ::overact::guard::reach(t100, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t100);
+        let t87 = 1.4705882352941178 * (t16 - t12);
+        let t88 = t16 + t12;
+        let t96 = 8.650519031141869
+            * (0.5 * (t88 * t88) - (t16 * t16 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t96, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t96);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t102 = 0.7071067811865476 * minus_s2_leg4;
-        let t103 = t91 - t102;
-        let t104 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = t103 * t104;
-        let t106 = t102 + t91;
-        let g1_vy_leg4 = t106 * t104;
+        let t98 = 0.7071067811865476 * minus_s2_leg4;
+        let t99 = t87 - t98;
+        let t100 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t99 * t100;
+        let t102 = t98 + t87;
+        let g1_vy_leg4 = t102 * t100;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t112 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t108 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t119 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t115 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t119, 3.440476190476192, "actuators")?;
-        let t120 = 1.0 / t119;
-        let t121 = t112 * t120;
-        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
-            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t121;
-        let t154 = t144 * t120;
-        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t144 * t154;
-        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
-        let t157 = 1.0 / t156;
-        let t158 = t146 * t157;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t112 * t121
-            - t146 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t161 = t3 * twist[2];
-        let t162 = twist[2] * t161;
-        let t164 = t7 * twist[2];
-        let t165 = twist[2] * t164;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t164)
-            + g2_vx_leg1 * (twist[1] + t161);
-        let rate_dot_1_leg1 = t24
-            * (t23 * t162 - t26 * t165 - 0.34 * (rate_2_leg1 * rate_2_leg1));
-        let t178 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t50;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t164)
-            - minus_g2_vx_leg2 * (twist[0] - t161);
-        let minus_rate_dot_1_leg2 = t50
-            * (t49 * t165 - t52 * t162 + 0.34 * (rate_2_leg2 * rate_2_leg2));
-        let t193 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        ::overact::guard::platform(t115, 3.440476190476192, "actuators")?;
+        let t116 = 1.0 / t115;
+        let t117 = t108 * t116;
+        let t118 = t3 * twist[2];
+        let t119 = twist[2] * t118;
+        let t121 = t7 * twist[2];
+        let t122 = twist[2] * t121;
+        let g2_vx_leg1 = 2.079725827019258 * t36;
+        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t121)
+            + g2_vx_leg1 * (twist[1] + t118);
+        let rate_dot_1_leg1 = t36
+            * (t35 * t119 - t38 * t122 - 0.34 * (rate_2_leg1 * rate_2_leg1));
+        let t135 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t56;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t121)
+            - minus_g2_vx_leg2 * (twist[0] - t118);
+        let minus_rate_dot_1_leg2 = t56
+            * (t55 * t122 - t58 * t119 + 0.34 * (rate_2_leg2 * rate_2_leg2));
+        let t150 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
         let minus_g2_vx_leg3 = 2.079725827019258 * t77;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t164)
-            + minus_g2_vx_leg3 * (twist[1] - t161);
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t121)
+            + minus_g2_vx_leg3 * (twist[1] - t118);
         let minus_rate_dot_1_leg3 = t77
-            * (t76 * t162 + t79 * t165 + 0.34 * (minus_rate_2_leg3 * minus_rate_2_leg3));
-        let t209 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t104;
-        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t161)
-            - g2_vx_leg4 * (twist[1] + t164);
-        let minus_rate_dot_1_leg4 = t104
-            * (0.34 * (rate_2_leg4 * rate_2_leg4) - (t103 * t165 + t106 * t162));
-        let t225 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t234 = minus_g1_vx_leg1 * t178 + minus_g1_vx_leg2 * t193
-            + minus_g1_vx_leg3 * t209 + minus_g1_vx_leg4 * t225;
-        let t245 = g1_vy_leg1 * t178 - minus_g1_vy_leg2 * t193 - minus_g1_vy_leg3 * t209
-            + g1_vy_leg4 * t225 + t234 * t154;
-        let t247 = g1_wz_leg1 * t178 + g1_wz_leg2 * t193 + g1_wz_leg3 * t209
-            + g1_wz_leg4 * t225 - t234 * t121 - t158 * t245;
-        let t248 = t247 / t160;
-        let t253 = t157 * t245 - t158 * t248;
-        Ok([t121 * t248 - (t234 * t120 + t154 * t253), t253, t248])
+            * (t76 * t119 + t79 * t122 + 0.34 * (minus_rate_2_leg3 * minus_rate_2_leg3));
+        let t166 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t100;
+        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t118)
+            - g2_vx_leg4 * (twist[1] + t121);
+        let minus_rate_dot_1_leg4 = t100
+            * (0.34 * (rate_2_leg4 * rate_2_leg4) - (t99 * t122 + t102 * t119));
+        let t182 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t191 = minus_g1_vx_leg1 * t135 + minus_g1_vx_leg2 * t150
+            + minus_g1_vx_leg3 * t166 + minus_g1_vx_leg4 * t182;
+        let t207 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t209 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t207 * t117;
+        let t217 = t207 * t116;
+        let t219 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t207 * t217;
+        ::overact::guard::platform(t219, 3.440476190476192, "actuators")?;
+        let t220 = 1.0 / t219;
+        let t221 = t209 * t220;
+        let t230 = g1_vy_leg1 * t135 - minus_g1_vy_leg2 * t150 - minus_g1_vy_leg3 * t166
+            + g1_vy_leg4 * t182 + t191 * t217;
+        let t232 = g1_wz_leg1 * t135 + g1_wz_leg2 * t150 + g1_wz_leg3 * t166
+            + g1_wz_leg4 * t182 - t191 * t117 - t221 * t230;
+        let t243 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t108 * t117
+            - t209 * t221;
+        ::overact::guard::platform(t243, 0.02560000000000001, "actuators")?;
+        let t244 = t232 / t243;
+        let t249 = t220 * t230 - t221 * t244;
+        Ok([t117 * t244 - (t191 * t116 + t217 * t249), t249, t244])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1256,7 +1267,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 371 operations (142 additions, 225 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 305 intermediates.
+    /// 307 operations (111 additions, 192 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 241 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1266,251 +1277,238 @@ impl Planar4Prr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = c_phi - s_phi;
-        let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[0] + t3 - 0.21213203435596426;
-        let t6 = s_phi + c_phi;
-        let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t10 = t5 + t9;
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] - (0.21213203435596426 - t3) + t7 + -0.21213203435596426;
+        let t10 = pose[1] + t9;
         let t11 = 1.4705882352941178 * t10;
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
-        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t23 = t11 + t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t23 * t24;
-        let t26 = t22 - t11;
-        let t27 = t3 * acceleration[2];
-        let t29 = t7 * twist[2];
-        let t30 = twist[2] * t29;
-        let t31 = acceleration[1] + t27 - t30;
-        let t33 = t7 * acceleration[2];
-        let t35 = t3 * twist[2];
-        let t36 = twist[2] * t35;
-        let t37 = acceleration[0] - t33 - t36;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let t41 = twist[0] - t29;
-        let t43 = twist[1] + t35;
-        let rate_2_leg1 = g2_vx_leg1 * t41 + g2_vx_leg1 * t43;
-        let t46 = rate_2_leg1 * rate_2_leg1;
-        let t48 = t26 * t31 - t23 * t37 - 0.34 * t46;
-        let rate_dot_1_leg1 = t24 * t48;
-        let t50 = minus_g1_vx_leg1 * rate_dot_1_leg1;
-        let g1_vy_leg1 = t26 * t24;
-        let t52 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
-        let t56 = g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * t43 - minus_g1_vx_leg1 * t41;
-        let t67 = t37 + t31;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * t67 + 0.7071067811865476 * t10 * t46);
-        let t73 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t24 - t6 * t24);
         let c2_leg1 = 2.079725827019258 * t10;
-        let t80 = c2_leg1 * rate_dot_1_leg1;
-        let t81 = g2_vx_leg1 * t80;
-        let t84 = minus_s2_leg1 * t46 + c2_leg1 * rate_dot_2_leg1;
-        let t92 = g2_vx_leg1 * t48;
-        let t93 = 2.079725827019258 * t67;
-        let t101 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t103 = twist[2] - rate_2_leg1;
-        let t104 = ::overact::math::signed(g2_vx_leg1, t103);
-        let t108 = pose[0] - t7 + 0.21213203435596426;
-        let t110 = pose[1] + t3 - 0.21213203435596426;
-        let t111 = t108 + t110;
-        let t119 = 8.650519031141869
-            * (0.5 * (t111 * t111) - (t108 * t108 + t110 * t110 - 0.1156));
-        ::overact::guard::reach(t119, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t119);
+        let t14 = 1.0 - c2_leg1 * c2_leg1;
+        ::overact::guard::reach(t14, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
+        let t16 = 0.7071067811865476 * minus_s2_leg1;
+        let t17 = t11 + t16;
+        let t18 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t17 * t18;
+        let t20 = t16 - t11;
+        let t21 = twist[2] * twist[2];
+        let t24 = c_phi * t21 + s_phi * acceleration[2];
+        let t27 = s_phi * t21 - c_phi * acceleration[2];
+        let t29 = 0.05656854249492381 * (t24 - t27);
+        let t30 = acceleration[1] - t29;
+        let t31 = acceleration[1] + acceleration[0];
+        let t32 = t31 - t30;
+        let t35 = t3 * twist[2];
+        let t37 = acceleration[1] - t7 * acceleration[2] + twist[2] * t35;
+        let t38 = t32 + t37;
+        let t39 = acceleration[1] + t29;
+        let t40 = t38 - t39;
+        let t41 = t40 - t30;
+        let t42 = t32 - t41;
+        let t44 = t31 - t37;
+        let t45 = t39 - t44;
+        let t46 = t37 - t45;
+        let g2_vx_leg1 = 2.079725827019258 * t18;
+        let t50 = twist[0] - t35;
+        let t51 = t7 * twist[2];
+        let t52 = twist[1] + t51;
+        let rate_2_leg1 = g2_vx_leg1 * (t50 + t52);
+        let t55 = rate_2_leg1 * rate_2_leg1;
+        let t56 = 0.34 * t55;
+        let t57 = t20 * t42 - t17 * t46 - t56;
+        let rate_dot_1_leg1 = t18 * t57;
+        let t59 = minus_g1_vx_leg1 * rate_dot_1_leg1;
+        let g1_vy_leg1 = t20 * t18;
+        let t61 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let t65 = g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * t52 - minus_g1_vx_leg1 * t50;
+        let t76 = t46 + t42;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t18
+            * (0.7071067811865476 * t76 + t56 * c2_leg1);
+        let t81 = g2_vx_leg1 * rate_dot_2_leg1;
+        let t82 = t7 - t3;
+        let g2_wz_leg1 = g2_vx_leg1 * t82;
+        let t85 = c2_leg1 * rate_dot_1_leg1;
+        let t86 = g2_vx_leg1 * t85;
+        let t89 = minus_s2_leg1 * t55 + c2_leg1 * rate_dot_2_leg1;
+        let t97 = g2_vx_leg1 * t57;
+        let t98 = 2.079725827019258 * t76;
+        let t106 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t108 = twist[2] - rate_2_leg1;
+        let t109 = ::overact::math::signed(g2_vx_leg1, t108);
+        let t112 = pose[0] + pose[0];
+        let t113 = t10 - t112;
+        let c2_leg2 = 2.079725827019258 * t113;
+        let t116 = 1.0 - c2_leg2 * c2_leg2;
+        ::overact::guard::reach(t116, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t116);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t121 = 0.7071067811865476 * minus_s2_leg2;
-        let t122 = t110 - t108;
-        let t123 = 1.4705882352941178 * t122;
-        let t124 = t121 - t123;
-        let t125 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t124 * t125;
-        let t128 = acceleration[0] - t27 + t30;
-        let t130 = t121 + t123;
-        let t132 = acceleration[1] - t33 - t36;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t125;
-        let t136 = twist[1] - t29;
-        let t138 = twist[0] - t35;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t136 - minus_g2_vx_leg2 * t138;
-        let t141 = rate_2_leg2 * rate_2_leg2;
-        let t143 = t124 * t128 + t130 * t132 + 0.34 * t141;
-        let minus_rate_dot_1_leg2 = t125 * t143;
-        let t145 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t130 * t125;
-        let t147 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t151 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t138 + minus_g1_vy_leg2 * t136;
-        let t162 = t128 - t132;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t125
-            * (0.7071067811865476 * t162 - 0.7071067811865476 * t122 * t141);
-        let t168 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t125 - t6 * t125);
-        let c2_leg2 = 2.079725827019258 * t122;
-        let t175 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t176 = minus_g2_vx_leg2 * t175;
-        let t179 = minus_s2_leg2 * t141 - c2_leg2 * minus_rate_dot_2_leg2;
-        let t187 = 2.079725827019258 * t162;
-        let t189 = minus_g2_vx_leg2 * t143;
-        let t196 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t198 = twist[2] - rate_2_leg2;
-        let t199 = ::overact::math::signed(minus_g2_vx_leg2, t198);
-        let t203 = pose[0] - t3 + 0.21213203435596426;
-        let t205 = pose[1] - t7 + 0.21213203435596426;
-        let t206 = t203 + t205;
-        let t207 = 1.4705882352941178 * t206;
-        let t208 = t203 - t205;
-        let t216 = 8.650519031141869
-            * (0.5 * (t208 * t208) - (t203 * t203 + t205 * t205 - 0.1156));
-        ::overact::guard::reach(t216, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t216);
+        let t118 = 0.7071067811865476 * minus_s2_leg2;
+        let t119 = 1.4705882352941178 * t113;
+        let t120 = t118 - t119;
+        let t121 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t120 * t121;
+        let t124 = t118 + t119;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t121;
+        let t128 = twist[0] + t35;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t52 - t128);
+        let t131 = rate_2_leg2 * rate_2_leg2;
+        let t132 = 0.34 * t131;
+        let t133 = t120 * t40 + t124 * t30 + t132;
+        let minus_rate_dot_1_leg2 = t121 * t133;
+        let t135 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t124 * t121;
+        let t137 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let t141 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t142 = twist[0] - t51;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t142
+            + minus_g1_vy_leg2 * (twist[1] - t35);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t121
+            * (0.7071067811865476 * t41 - t132 * c2_leg2);
+        let t158 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t82;
+        let t161 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t162 = minus_g2_vx_leg2 * t161;
+        let t165 = minus_s2_leg2 * t131 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t173 = 2.079725827019258 * t41;
+        let t175 = minus_g2_vx_leg2 * t133;
+        let t182 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t184 = twist[2] - rate_2_leg2;
+        let t185 = ::overact::math::signed(minus_g2_vx_leg2, t184);
+        let t188 = t9 - pose[1];
+        let t189 = t112 - t188;
+        let t190 = 1.4705882352941178 * t189;
+        let minus_c2_leg3 = 2.079725827019258 * t189;
+        let t193 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
+        ::overact::guard::reach(t193, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t193);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t218 = 0.7071067811865476 * minus_s2_leg3;
-        let t219 = t207 - t218;
-        let t220 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t219 * t220;
-        let t223 = acceleration[0] + t33 + t36;
-        let t225 = t218 + t207;
-        let t227 = acceleration[1] - t27 + t30;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t220;
-        let t231 = twist[0] + t29;
-        let t233 = twist[1] - t35;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t231 + minus_g2_vx_leg3 * t233;
-        let t236 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t238 = t219 * t223 + t225 * t227 + 0.34 * t236;
-        let minus_rate_dot_1_leg3 = t220 * t238;
-        let t240 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t225 * t220;
-        let t242 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
-        let t246 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t231 + minus_g1_vy_leg3 * t233;
-        let t257 = t223 + t227;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t220
-            * (0.7071067811865476 * t257 + 0.7071067811865476 * t206 * t236);
-        let t263 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t220 - t6 * t220);
-        let minus_c2_leg3 = 2.079725827019258 * t206;
-        let t272 = minus_s2_leg3 * t236 + minus_c2_leg3 * minus_rate_dot_2_leg3;
-        let t274 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t275 = minus_g2_vx_leg3 * t274;
-        let t282 = 2.079725827019258 * t257;
-        let t284 = minus_g2_vx_leg3 * t238;
-        let t291 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t293 = minus_rate_2_leg3 + twist[2];
-        let t294 = ::overact::math::signed(minus_g2_vx_leg3, t293);
-        let t298 = pose[0] + t7 - 0.21213203435596426;
-        let t300 = pose[1] - t3 + 0.21213203435596426;
-        let t301 = t298 - t300;
-        let t302 = 1.4705882352941178 * t301;
-        let t303 = t298 + t300;
-        let t311 = 8.650519031141869
-            * (0.5 * (t303 * t303) - (t298 * t298 + t300 * t300 - 0.1156));
-        ::overact::guard::reach(t311, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t311);
+        let t195 = 0.7071067811865476 * minus_s2_leg3;
+        let t196 = t190 - t195;
+        let t197 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t196 * t197;
+        let t200 = t195 + t190;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t197;
+        let t204 = twist[1] + t35;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t142 + t204);
+        let t207 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t208 = 0.34 * t207;
+        let t209 = t196 * t32 + t200 * t37 + t208;
+        let minus_rate_dot_1_leg3 = t197 * t209;
+        let t211 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t200 * t197;
+        let t213 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t217 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let t219 = twist[1] - t51;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t128 + minus_g1_vy_leg3 * t219;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t197
+            * (0.7071067811865476 * t38 + t208 * minus_c2_leg3);
+        let t233 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t82;
+        let t238 = minus_s2_leg3 * t207 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t240 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t241 = minus_g2_vx_leg3 * t240;
+        let t248 = 2.079725827019258 * t38;
+        let t250 = minus_g2_vx_leg3 * t209;
+        let t257 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t259 = minus_rate_2_leg3 + twist[2];
+        let t260 = ::overact::math::signed(minus_g2_vx_leg3, t259);
+        let t263 = 1.4705882352941178 * t188;
+        let c2_leg4 = 2.079725827019258 * t188;
+        let t266 = 1.0 - c2_leg4 * c2_leg4;
+        ::overact::guard::reach(t266, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t266);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t313 = 0.7071067811865476 * minus_s2_leg4;
-        let t314 = t302 - t313;
-        let t315 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = t314 * t315;
-        let t318 = acceleration[0] + t27 - t30;
-        let t320 = t313 + t302;
-        let t322 = acceleration[1] + t33 + t36;
-        let g2_vx_leg4 = 2.079725827019258 * t315;
-        let t326 = twist[0] + t35;
-        let t328 = twist[1] + t29;
-        let rate_2_leg4 = g2_vx_leg4 * t326 - g2_vx_leg4 * t328;
-        let t331 = rate_2_leg4 * rate_2_leg4;
-        let t333 = t314 * t318 - t320 * t322 + 0.34 * t331;
-        let minus_rate_dot_1_leg4 = t315 * t333;
-        let t335 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let g1_vy_leg4 = t320 * t315;
-        let t337 = g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t341 = g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vy_leg4 * t328 - minus_g1_vx_leg4 * t326;
-        let t352 = t322 - t318;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t315
-            * (0.7071067811865476 * t352 - 0.7071067811865476 * t301 * t331);
-        let t358 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t315 - t6 * t315);
-        let c2_leg4 = 2.079725827019258 * t301;
-        let t367 = minus_s2_leg4 * t331 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t369 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t370 = g2_vx_leg4 * t369;
-        let t377 = 2.079725827019258 * t352;
-        let t379 = g2_vx_leg4 * t333;
-        let t386 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t388 = twist[2] - rate_2_leg4;
-        let t389 = ::overact::math::signed(g2_vx_leg4, t388);
-        let t392 = twist[2] * twist[2];
-        let t395 = c_phi * t392 + s_phi * acceleration[2];
-        let t398 = c_phi * acceleration[2] - s_phi * t392;
+        let t268 = 0.7071067811865476 * minus_s2_leg4;
+        let t269 = t263 - t268;
+        let t270 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t269 * t270;
+        let t273 = t268 + t263;
+        let g2_vx_leg4 = 2.079725827019258 * t270;
+        let rate_2_leg4 = g2_vx_leg4 * (t50 - t219);
+        let t279 = rate_2_leg4 * rate_2_leg4;
+        let t280 = 0.34 * t279;
+        let t281 = t269 * t44 - t273 * t39 + t280;
+        let minus_rate_dot_1_leg4 = t270 * t281;
+        let t283 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let g1_vy_leg4 = t273 * t270;
+        let t285 = g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t289 = g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vy_leg4 * t204 - minus_g1_vx_leg4 * (twist[0] + t51);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t270
+            * (0.7071067811865476 * t45 - t280 * c2_leg4);
+        let t305 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t82;
+        let t310 = minus_s2_leg4 * t279 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t312 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t313 = g2_vx_leg4 * t312;
+        let t320 = 2.079725827019258 * t45;
+        let t322 = g2_vx_leg4 * t281;
+        let t329 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t331 = twist[2] - rate_2_leg4;
+        let t332 = ::overact::math::signed(g2_vx_leg4, t331);
         Ok([
             [
-                -t50, -t50, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t73,
-                t81 - minus_g1_vx_leg1 * t84, t92 - minus_g1_vx_leg1 * t93, -t50, t101, -t104, t145,
-                t145, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -t59, -t59, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t81,
+                t86 - minus_g1_vx_leg1 * t89, t97 - minus_g1_vx_leg1 * t98, -t59, t106, -t109, t135,
+                t135, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t168, t176 - minus_g1_vx_leg2 * t179, minus_g1_vx_leg2 * t187 + t189, t145, -t196,
-                t199, t240, t240, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                t158, t162 - minus_g1_vx_leg2 * t165, minus_g1_vx_leg2 * t173 + t175, t135, -t182,
+                t185, t211, t211, minus_g1_vx_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
-                t263, -(minus_g1_vx_leg3 * t272 + t275), minus_g1_vx_leg3 * t282 + t284, t240, t291,
-                t294, t335, t335, -(minus_g1_vx_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t358,
-                -(minus_g1_vx_leg4 * t367 + t370), minus_g1_vx_leg4 * t377 - t379, t335, t386,
-                -t389, 0.0, -t395, -t398, acceleration[0],
+                t233, -(minus_g1_vx_leg3 * t238 + t241), minus_g1_vx_leg3 * t248 + t250, t211, t257,
+                t260, t283, t283, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t305,
+                -(minus_g1_vx_leg4 * t310 + t313), minus_g1_vx_leg4 * t320 - t322, t283, t329,
+                -t332, 0.0, -t24, t27, acceleration[0],
             ],
             [
-                t52, t52, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t73,
-                g1_vy_leg1 * t84 + t81, g1_vy_leg1 * t93 + t92, t52, t101, -t104, t147, t147,
+                t61, t61, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t81,
+                g1_vy_leg1 * t89 + t86, g1_vy_leg1 * t98 + t97, t61, t106, -t109, t137, t137,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t168, -(minus_g1_vy_leg2 * t179 + t176), minus_g1_vy_leg2 * t187 - t189, t147,
-                t196, -t199, t242, t242, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                -t158, -(minus_g1_vy_leg2 * t165 + t162), minus_g1_vy_leg2 * t173 - t175, t137,
+                t182, -t185, t213, t213, minus_g1_vy_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
-                t263, -(minus_g1_vy_leg3 * t272 + t275), minus_g1_vy_leg3 * t282 + t284, t242, t291,
-                t294, -t337, -t337, g1_vy_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t358,
-                g1_vy_leg4 * t367 + t370, t379 - g1_vy_leg4 * t377, -t337, -t386, t389, 0.0, t398,
-                -t395, acceleration[1],
+                t233, -(minus_g1_vy_leg3 * t238 + t241), minus_g1_vy_leg3 * t248 + t250, t213, t257,
+                t260, -t285, -t285, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t305,
+                g1_vy_leg4 * t310 + t313, t322 - g1_vy_leg4 * t320, -t285, -t329, t332, 0.0, -t27,
+                -t24, acceleration[1],
             ],
             [
-                t56, t56, g1_wz_leg1 * rate_1_leg1,
+                t65, t65, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t84 + g2_wz_leg1 * t80,
-                g1_wz_leg1 * t93 + g2_wz_leg1 * t48, t56,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t89 + g2_wz_leg1 * t85,
+                g1_wz_leg1 * t98 + g2_wz_leg1 * t57, t65,
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t103), -t151, -t151,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t108), -t141, -t141,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t179 - g2_wz_leg2 * t175,
-                -(g1_wz_leg2 * t187 + g2_wz_leg2 * t143), -t151,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t165 - g2_wz_leg2 * t161,
+                -(g1_wz_leg2 * t173 + g2_wz_leg2 * t133), -t141,
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t198), -t246, -t246,
+                ::overact::math::signed(1.0 - g2_wz_leg2, t184), -t217, -t217,
                 -(g1_wz_leg3 * minus_rate_1_leg3),
                 -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t272 + g2_wz_leg3 * t274,
-                -(g1_wz_leg3 * t282 + g2_wz_leg3 * t238), -t246,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t238 + g2_wz_leg3 * t240,
+                -(g1_wz_leg3 * t248 + g2_wz_leg3 * t209), -t217,
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t293), -t341, -t341,
+                ::overact::math::signed(1.0 - g2_wz_leg3, t259), -t289, -t289,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
                 g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
-                g1_wz_leg4 * t367 - g2_wz_leg4 * t369, -(g1_wz_leg4 * t377 + g2_wz_leg4 * t333),
-                -t341, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t388), acceleration[2],
+                g1_wz_leg4 * t310 - g2_wz_leg4 * t312, -(g1_wz_leg4 * t320 + g2_wz_leg4 * t281),
+                -t289, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t331), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ])
     }
@@ -1525,7 +1523,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 315 operations (108 additions, 203 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 253 intermediates.
+    /// 289 operations (100 additions, 185 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 229 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1547,203 +1545,202 @@ impl Planar4Prr {
         let t3 = 1.0 / s2_leg1;
         let t4 = 0.7071067811865476 * t3;
         let g1_vx_leg1 = t2 * t4;
-        let t8 = s_phi + c_phi;
-        let t9 = 0.05656854249492381 * t8;
-        let t10 = t9 * acceleration[2];
-        let t12 = c_phi - s_phi;
-        let t13 = 0.05656854249492381 * t12;
+        let t9 = 0.05656854249492381 * (c_phi - s_phi);
+        let t13 = 0.05656854249492381 * (s_phi + c_phi);
         let t14 = t13 * twist[2];
-        let t15 = twist[2] * t14;
-        let t17 = 0.2404163056034262 * t2;
+        let t16 = acceleration[1] - t9 * acceleration[2] + twist[2] * t14;
+        let t17 = twist[2] * twist[2];
+        let t20 = c_phi * t17 + s_phi * acceleration[2];
+        let t23 = s_phi * t17 - c_phi * acceleration[2];
+        let t25 = 0.05656854249492381 * (t20 - t23);
+        let t26 = acceleration[1] + t25;
+        let t27 = acceleration[0] + acceleration[1];
+        let t28 = t27 - t16;
+        let t29 = t26 - t28;
+        let t30 = t16 - t29;
         let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t19 = t9 * twist[2];
-        let t20 = twist[0] - t19;
-        let t22 = twist[1] + t14;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t20 + minus_g2_vx_leg1 * t22;
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t27 = acceleration[0] - t10 - t15 + t17 * t25;
-        let t29 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t29 * t4;
-        let t31 = t13 * acceleration[2];
-        let t33 = twist[2] * t19;
-        let t35 = 0.2404163056034262 * t29;
-        let t37 = acceleration[1] + t31 - t33 + t35 * t25;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t37;
-        let t40 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t41 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = g1_vy_leg1 * t13 - g1_vx_leg1 * t9;
-        let t45 = g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vx_leg1 * t20 + g1_vy_leg1 * t22;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t27 + minus_g2_vx_leg1 * t37;
-        let t58 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t8 - t3 * t12);
-        let t66 = s2_leg1 * t25 + c2_leg1 * minus_rate_dot_2_leg1;
-        let t68 = c2_leg1 * rate_dot_1_leg1;
-        let t69 = minus_g2_vx_leg1 * t68;
-        let t78 = s2_leg1 * minus_rate_dot_2_leg1 - c2_leg1 * t25;
-        let t80 = s2_leg1 * rate_dot_1_leg1;
-        let t81 = minus_g2_vx_leg1 * t80;
-        let t88 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t90 = minus_rate_2_leg1 + twist[2];
-        let t91 = ::overact::math::signed(minus_g2_vx_leg1, t90);
-        let t96 = c2_leg2 + s2_leg2;
-        let t97 = 1.0 / s2_leg2;
-        let t98 = 0.7071067811865476 * t97;
-        let minus_g1_vx_leg2 = t96 * t98;
-        let t102 = t2 * t17 + t29 * t35;
-        let g2_vx_leg2 = 2.079725827019258 * t97;
-        let t104 = twist[0] - t14;
-        let t106 = twist[1] - t19;
-        let rate_2_leg2 = g2_vx_leg2 * t104 - g2_vx_leg2 * t106;
-        let t109 = rate_2_leg2 * rate_2_leg2;
-        let t112 = acceleration[0] - t31 + t33;
-        let t114 = s2_leg2 - c2_leg2;
-        let t116 = acceleration[1] - t10 - t15;
-        let rate_dot_1_leg2 = t98 * (t102 * t109 - (t96 * t112 + t114 * t116));
-        let t121 = minus_g1_vx_leg2 * rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t114 * t98;
-        let t123 = minus_g1_vy_leg2 * rate_dot_1_leg2;
-        let g1_wz_leg2 = t9 * minus_g1_vy_leg2 + t13 * minus_g1_vx_leg2;
-        let t127 = g1_wz_leg2 * rate_dot_1_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t104 + minus_g1_vy_leg2 * t106;
-        let t138 = t112 - t116;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t97
-            * (0.7071067811865476 * t138 - t109 * (0.34 * c2_leg2));
-        let t144 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t8 * t97 - t12 * t97);
+        let t32 = twist[0] - t14;
+        let t33 = t9 * twist[2];
+        let t34 = twist[1] + t33;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t32 + t34);
+        let t37 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t38 = 0.2404163056034262 * t37;
+        let t40 = t30 + t2 * t38;
+        let t42 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t42 * t4;
+        let t44 = acceleration[1] - t25;
+        let t45 = t27 - t44;
+        let t46 = t45 + t16;
+        let t47 = t46 - t26;
+        let t48 = t47 - t44;
+        let t49 = t45 - t48;
+        let t51 = t49 + t42 * t38;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t51;
+        let t54 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t55 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = g1_vy_leg1 * t9 - g1_vx_leg1 * t13;
+        let t59 = g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * t32 + g1_vy_leg1 * t34;
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t40 + t51);
+        let t71 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t72 = t13 - t9;
+        let g2_wz_leg1 = minus_g2_vx_leg1 * t72;
+        let t77 = s2_leg1 * t37 + c2_leg1 * minus_rate_dot_2_leg1;
+        let t79 = c2_leg1 * rate_dot_1_leg1;
+        let t80 = minus_g2_vx_leg1 * t79;
+        let t88 = 2.079725827019258 * (t30 + t49);
+        let t90 = s2_leg1 * rate_dot_1_leg1;
+        let t91 = minus_g2_vx_leg1 * t90;
+        let t98 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
+        let t100 = minus_rate_2_leg1 + twist[2];
+        let t101 = ::overact::math::signed(minus_g2_vx_leg1, t100);
+        let t106 = c2_leg2 + s2_leg2;
+        let t107 = 1.0 / s2_leg2;
+        let t108 = 0.7071067811865476 * t107;
+        let minus_g1_vx_leg2 = t106 * t108;
+        let t110 = 0.2404163056034262 + 0.2404163056034262;
+        let g2_vx_leg2 = 2.079725827019258 * t107;
+        let t112 = twist[0] + t14;
+        let minus_rate_2_leg2 = g2_vx_leg2 * (t34 - t112);
+        let t115 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t118 = s2_leg2 - c2_leg2;
+        let rate_dot_1_leg2 = t108 * (t110 * t115 - (t106 * t47 + t118 * t44));
+        let t123 = minus_g1_vx_leg2 * rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t118 * t108;
+        let t125 = minus_g1_vy_leg2 * rate_dot_1_leg2;
+        let g1_wz_leg2 = t13 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
+        let t129 = g1_wz_leg2 * rate_dot_1_leg2;
+        let t130 = twist[0] - t33;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t130
+            + minus_g1_vy_leg2 * (twist[1] - t14);
+        let rate_dot_2_leg2 = 2.9411764705882355 * t107
+            * (0.7071067811865476 * t48 - t115 * (0.34 * c2_leg2));
+        let t147 = g2_vx_leg2 * rate_dot_2_leg2;
+        let g2_wz_leg2 = g2_vx_leg2 * t72;
         let t150 = c2_leg2 * rate_dot_1_leg2;
         let t151 = g2_vx_leg2 * t150;
-        let t154 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t109;
-        let t162 = 2.079725827019258 * t138;
+        let t154 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t115;
+        let t162 = 2.079725827019258 * t48;
         let t164 = s2_leg2 * rate_dot_1_leg2;
         let t165 = g2_vx_leg2 * t164;
-        let t172 = ::overact::math::signed(g2_vx_leg2, rate_2_leg2);
-        let t174 = twist[2] - rate_2_leg2;
-        let t175 = ::overact::math::signed(g2_vx_leg2, t174);
-        let t180 = s2_leg3 - c2_leg3;
-        let t181 = 1.0 / s2_leg3;
-        let t182 = 0.7071067811865476 * t181;
-        let g1_vx_leg3 = t180 * t182;
-        let t184 = s2_leg3 + c2_leg3;
-        let t186 = acceleration[1] - t31 + t33;
-        let t189 = acceleration[0] + t10 + t15;
-        let g2_vx_leg3 = 2.079725827019258 * t181;
-        let t193 = twist[0] + t19;
-        let t195 = twist[1] - t14;
-        let rate_2_leg3 = g2_vx_leg3 * t193 + g2_vx_leg3 * t195;
-        let t198 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t182 * (t184 * t186 - t180 * t189 - t102 * t198);
-        let t202 = g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t184 * t182;
-        let t204 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t13 * minus_g1_vy_leg3 + t9 * g1_vx_leg3;
-        let t208 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * t193 - minus_g1_vy_leg3 * t195;
-        let t221 = t189 + t186;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t181
-            * (t198 * (0.34 * c2_leg3) - 0.7071067811865476 * t221);
-        let t225 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t8 * t181 - t12 * t181);
-        let t233 = s2_leg3 * t198 + c2_leg3 * minus_rate_dot_2_leg3;
-        let t235 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t172 = -minus_rate_2_leg2;
+        let t173 = ::overact::math::signed(g2_vx_leg2, t172);
+        let t175 = twist[2] + minus_rate_2_leg2;
+        let t176 = ::overact::math::signed(g2_vx_leg2, t175);
+        let t181 = s2_leg3 - c2_leg3;
+        let t182 = 1.0 / s2_leg3;
+        let t183 = 0.7071067811865476 * t182;
+        let g1_vx_leg3 = t181 * t183;
+        let t185 = s2_leg3 + c2_leg3;
+        let g2_vx_leg3 = 2.079725827019258 * t182;
+        let t190 = twist[1] + t14;
+        let rate_2_leg3 = g2_vx_leg3 * (t130 + t190);
+        let t193 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t183 * (t185 * t16 - t181 * t45 - t110 * t193);
+        let t197 = g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t185 * t183;
+        let t199 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 + t13 * g1_vx_leg3;
+        let t203 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let t205 = twist[1] - t33;
+        let rate_1_leg3 = g1_vx_leg3 * t112 - minus_g1_vy_leg3 * t205;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t182
+            * (t193 * (0.34 * c2_leg3) - 0.7071067811865476 * t46);
+        let t220 = g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = g2_vx_leg3 * t72;
+        let t225 = s2_leg3 * t193 + c2_leg3 * minus_rate_dot_2_leg3;
+        let t227 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t228 = g2_vx_leg3 * t227;
+        let t235 = s2_leg3 * minus_rate_dot_1_leg3;
         let t236 = g2_vx_leg3 * t235;
-        let t243 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t244 = g2_vx_leg3 * t243;
-        let t245 = 2.079725827019258 * t221;
-        let t253 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t255 = twist[2] - rate_2_leg3;
-        let t256 = ::overact::math::signed(g2_vx_leg3, t255);
-        let t261 = c2_leg4 + s2_leg4;
-        let t262 = 1.0 / s2_leg4;
-        let t263 = 0.7071067811865476 * t262;
-        let g1_vx_leg4 = t261 * t263;
-        let t266 = acceleration[0] + t31 - t33;
-        let t268 = c2_leg4 - s2_leg4;
-        let t270 = acceleration[1] + t10 + t15;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t262;
-        let t274 = twist[1] + t19;
-        let t276 = twist[0] + t14;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t274 - minus_g2_vx_leg4 * t276;
-        let t279 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = t263 * (t261 * t266 - t268 * t270 + t102 * t279);
-        let t283 = g1_vx_leg4 * rate_dot_1_leg4;
-        let minus_g1_vy_leg4 = t268 * t263;
-        let t285 = minus_g1_vy_leg4 * rate_dot_1_leg4;
-        let g1_wz_leg4 = t13 * g1_vx_leg4 - t9 * minus_g1_vy_leg4;
-        let t289 = g1_wz_leg4 * rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vx_leg4 * t276 - minus_g1_vy_leg4 * t274;
-        let t300 = t270 - t266;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t262
-            * (0.7071067811865476 * t300 - t279 * (0.34 * c2_leg4));
-        let t306 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t8 * t262 - t12 * t262);
-        let t314 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t279;
-        let t316 = c2_leg4 * rate_dot_1_leg4;
-        let t317 = minus_g2_vx_leg4 * t316;
-        let t324 = s2_leg4 * rate_dot_1_leg4;
-        let t325 = minus_g2_vx_leg4 * t324;
-        let t326 = 2.079725827019258 * t300;
-        let t334 = ::overact::math::signed(minus_g2_vx_leg4, rate_2_leg4);
-        let t336 = twist[2] - rate_2_leg4;
-        let t337 = ::overact::math::signed(minus_g2_vx_leg4, t336);
-        let t340 = twist[2] * twist[2];
-        let t343 = c_phi * t340 + s_phi * acceleration[2];
-        let t346 = c_phi * acceleration[2] - s_phi * t340;
+        let t237 = 2.079725827019258 * t46;
+        let t245 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
+        let t247 = twist[2] - rate_2_leg3;
+        let t248 = ::overact::math::signed(g2_vx_leg3, t247);
+        let t253 = c2_leg4 + s2_leg4;
+        let t254 = 1.0 / s2_leg4;
+        let t255 = 0.7071067811865476 * t254;
+        let g1_vx_leg4 = t253 * t255;
+        let t258 = c2_leg4 - s2_leg4;
+        let minus_g2_vx_leg4 = 2.079725827019258 * t254;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t32 - t205);
+        let t264 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let rate_dot_1_leg4 = t255 * (t253 * t28 - t258 * t26 + t110 * t264);
+        let t268 = g1_vx_leg4 * rate_dot_1_leg4;
+        let minus_g1_vy_leg4 = t258 * t255;
+        let t270 = minus_g1_vy_leg4 * rate_dot_1_leg4;
+        let g1_wz_leg4 = t9 * g1_vx_leg4 - t13 * minus_g1_vy_leg4;
+        let t274 = g1_wz_leg4 * rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * (twist[0] + t33) - minus_g1_vy_leg4 * t190;
+        let rate_dot_2_leg4 = 2.9411764705882355 * t254
+            * (0.7071067811865476 * t29 - t264 * (0.34 * c2_leg4));
+        let t291 = minus_g2_vx_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = minus_g2_vx_leg4 * t72;
+        let t296 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t264;
+        let t298 = c2_leg4 * rate_dot_1_leg4;
+        let t299 = minus_g2_vx_leg4 * t298;
+        let t306 = s2_leg4 * rate_dot_1_leg4;
+        let t307 = minus_g2_vx_leg4 * t306;
+        let t308 = 2.079725827019258 * t29;
+        let t316 = -minus_rate_2_leg4;
+        let t317 = ::overact::math::signed(minus_g2_vx_leg4, t316);
+        let t319 = twist[2] + minus_rate_2_leg4;
+        let t320 = ::overact::math::signed(minus_g2_vx_leg4, t319);
         Ok([
             [
-                t40, t40, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t58,
-                -(g1_vx_leg1 * t66 + t69), g1_vx_leg1 * t78 + t81, t40, t88, t91, -t121, -t121,
+                t54, t54, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t71,
+                -(g1_vx_leg1 * t77 + t80), g1_vx_leg1 * t88 + t91, t54, t98, t101, -t123, -t123,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t144, t151 - minus_g1_vx_leg2 * t154, minus_g1_vx_leg2 * t162 - t165, -t121, t172,
-                -t175, -t202, -t202, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t225,
-                -(g1_vx_leg3 * t233 + t236), t244 - g1_vx_leg3 * t245, -t202, t253, -t256, t283,
-                t283, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -t306, g1_vx_leg4 * t314 - t317, t325 - g1_vx_leg4 * t326, t283, -t334,
-                t337, 0.0, -t343, -t346, acceleration[0],
+                t147, t151 - minus_g1_vx_leg2 * t154, minus_g1_vx_leg2 * t162 - t165, -t123, t173,
+                -t176, -t197, -t197, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t220,
+                -(g1_vx_leg3 * t225 + t228), t236 - g1_vx_leg3 * t237, -t197, t245, -t248, t268,
+                t268, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
+                g1_vx_leg4, -t291, g1_vx_leg4 * t296 - t299, t307 - g1_vx_leg4 * t308, t268, -t317,
+                t320, 0.0, -t20, t23, acceleration[0],
             ],
             [
-                t41, t41, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t58,
-                -(g1_vy_leg1 * t66 + t69), g1_vy_leg1 * t78 + t81, t41, t88, t91, -t123, -t123,
+                t55, t55, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t71,
+                -(g1_vy_leg1 * t77 + t80), g1_vy_leg1 * t88 + t91, t55, t98, t101, -t125, -t125,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t144, -(minus_g1_vy_leg2 * t154 + t151), minus_g1_vy_leg2 * t162 + t165, -t123,
-                -t172, t175, t204, t204, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, -t225,
-                minus_g1_vy_leg3 * t233 - t236, minus_g1_vy_leg3 * t245 + t244, t204, t253, -t256,
-                -t285, -t285, -(minus_g1_vy_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), -minus_g1_vy_leg4, t306,
-                t317 - minus_g1_vy_leg4 * t314, minus_g1_vy_leg4 * t326 - t325, -t285, t334, -t337,
-                0.0, t346, -t343, acceleration[1],
+                -t147, -(minus_g1_vy_leg2 * t154 + t151), minus_g1_vy_leg2 * t162 + t165, -t125,
+                -t173, t176, t199, t199, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, -t220,
+                minus_g1_vy_leg3 * t225 - t228, minus_g1_vy_leg3 * t237 + t236, t199, t245, -t248,
+                -t270, -t270, -(minus_g1_vy_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), -minus_g1_vy_leg4, t291,
+                t299 - minus_g1_vy_leg4 * t296, minus_g1_vy_leg4 * t308 - t307, -t270, t317, -t320,
+                0.0, -t23, -t20, acceleration[1],
             ],
             [
-                t45, t45, g1_wz_leg1 * rate_1_leg1,
+                t59, t59, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t68 - g1_wz_leg1 * t66,
-                g1_wz_leg1 * t78 - g2_wz_leg1 * t80, t45,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t79 - g1_wz_leg1 * t77,
+                g1_wz_leg1 * t88 - g2_wz_leg1 * t90, t59,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t90), t127, t127,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t100), t129, t129,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
                 g2_wz_leg2 * rate_dot_2_leg2, g1_wz_leg2 * t154 + g2_wz_leg2 * t150,
-                -(g1_wz_leg2 * t162 + g2_wz_leg2 * t164), t127,
-                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t174), -t208, -t208,
+                -(g1_wz_leg2 * t162 + g2_wz_leg2 * t164), t129,
+                ::overact::math::signed(g2_wz_leg2, t172),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t175), -t203, -t203,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g1_wz_leg3 * t233 + g2_wz_leg3 * t235), g2_wz_leg3 * t243 - g1_wz_leg3 * t245,
-                -t208, ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t255), t289, t289,
+                -(g1_wz_leg3 * t225 + g2_wz_leg3 * t227), g2_wz_leg3 * t235 - g1_wz_leg3 * t237,
+                -t203, ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t247), t274, t274,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg4 * t314 + g2_wz_leg4 * t316,
-                -(g1_wz_leg4 * t326 + g2_wz_leg4 * t324), t289,
-                ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t336), acceleration[2],
+                g1_wz_leg4, g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg4 * t296 + g2_wz_leg4 * t298,
+                -(g1_wz_leg4 * t308 + g2_wz_leg4 * t306), t274,
+                ::overact::math::signed(g2_wz_leg4, t316),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t319), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ])
     }
@@ -1758,7 +1755,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 523 operations (206 additions, 310 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 454 intermediates.
+    /// 460 operations (175 additions, 278 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 391 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1770,312 +1767,296 @@ impl Planar4Prr {
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = c_phi - s_phi;
-        let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[0] + t3 - 0.21213203435596426;
-        let t6 = s_phi + c_phi;
-        let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t10 = t5 + t9;
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] - (0.21213203435596426 - t3) + t7 + -0.21213203435596426;
+        let t10 = pose[1] + t9;
         let t11 = 1.4705882352941178 * t10;
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        let c2_leg1 = 2.079725827019258 * t10;
+        let t14 = 1.0 - c2_leg1 * c2_leg1;
+        ::overact::guard::reach(t14, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t14);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t23 = t11 + t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t23 * t24;
-        let t26 = t22 - t11;
-        let g1_vy_leg1 = t26 * t24;
-        let t30 = pose[0] - t7 + 0.21213203435596426;
-        let t32 = pose[1] + t3 - 0.21213203435596426;
-        let t33 = t30 + t32;
-        let t41 = 8.650519031141869
-            * (0.5 * (t33 * t33) - (t30 * t30 + t32 * t32 - 0.1156));
-        ::overact::guard::reach(t41, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t41);
+        let t16 = 0.7071067811865476 * minus_s2_leg1;
+        let t17 = t11 + t16;
+        let t18 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t17 * t18;
+        let t20 = t16 - t11;
+        let g1_vy_leg1 = t20 * t18;
+        let t23 = pose[0] + pose[0];
+        let t24 = t10 - t23;
+        let c2_leg2 = 2.079725827019258 * t24;
+        let t27 = 1.0 - c2_leg2 * c2_leg2;
+        ::overact::guard::reach(t27, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t27);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t43 = 0.7071067811865476 * minus_s2_leg2;
-        let t44 = t32 - t30;
-        let t45 = 1.4705882352941178 * t44;
-        let t46 = t43 + t45;
-        let t47 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t46 * t47;
-        let t52 = pose[0] - t3 + 0.21213203435596426;
-        let t54 = pose[1] - t7 + 0.21213203435596426;
-        let t55 = t52 - t54;
-        let t63 = 8.650519031141869
-            * (0.5 * (t55 * t55) - (t52 * t52 + t54 * t54 - 0.1156));
-        ::overact::guard::reach(t63, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t63);
+        let t29 = 0.7071067811865476 * minus_s2_leg2;
+        let t30 = 1.4705882352941178 * t24;
+        let t31 = t29 + t30;
+        let t32 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t31 * t32;
+        let t36 = t9 - pose[1];
+        let t37 = t23 - t36;
+        let minus_c2_leg3 = 2.079725827019258 * t37;
+        let t40 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
+        ::overact::guard::reach(t40, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t40);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t65 = 0.7071067811865476 * minus_s2_leg3;
-        let t66 = t52 + t54;
-        let t67 = 1.4705882352941178 * t66;
-        let t68 = t65 + t67;
-        let t69 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t68 * t69;
-        let t74 = pose[0] + t7 - 0.21213203435596426;
-        let t76 = pose[1] - t3 + 0.21213203435596426;
-        let t77 = t74 + t76;
-        let t85 = 8.650519031141869
-            * (0.5 * (t77 * t77) - (t74 * t74 + t76 * t76 - 0.1156));
-        ::overact::guard::reach(t85, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t85);
+        let t42 = 0.7071067811865476 * minus_s2_leg3;
+        let t43 = 1.4705882352941178 * t37;
+        let t44 = t42 + t43;
+        let t45 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t44 * t45;
+        let c2_leg4 = 2.079725827019258 * t36;
+        let t51 = 1.0 - c2_leg4 * c2_leg4;
+        ::overact::guard::reach(t51, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t87 = 0.7071067811865476 * minus_s2_leg4;
-        let t88 = t74 - t76;
-        let t89 = 1.4705882352941178 * t88;
-        let t90 = t87 + t89;
-        let t91 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t90 * t91;
-        let t95 = t43 - t45;
-        let minus_g1_vx_leg2 = t95 * t47;
-        let t100 = t67 - t65;
-        let minus_g1_vx_leg3 = t100 * t69;
-        let t104 = t89 - t87;
-        let minus_g1_vx_leg4 = t104 * t91;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        let t53 = 0.7071067811865476 * minus_s2_leg4;
+        let t54 = 1.4705882352941178 * t36;
+        let t55 = t53 + t54;
+        let t56 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t55 * t56;
+        let t60 = t29 - t30;
+        let minus_g1_vx_leg2 = t60 * t32;
+        let t65 = t43 - t42;
+        let minus_g1_vx_leg3 = t65 * t45;
+        let t69 = t54 - t53;
+        let minus_g1_vx_leg4 = t69 * t56;
+        let t72 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t79 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t145 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        ::overact::guard::platform(t79, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t79, 3.440476190476192, "actuators")?;
+        let t80 = 1.0 / t79;
+        let t81 = t72 * t80;
+        let t83 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t72 * t81;
+        ::overact::guard::platform(t83, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t83, 3.440476190476192, "actuators")?;
+        let t84 = 1.0 / t83;
+        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let t110 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t146 = t145 * t115;
-        let t157 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t146;
-        let t158 = t157 * t119;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t145 * t146
-            - t157 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t111 = t110 * t80;
+        let t122 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t72 * t111;
+        let t123 = t122 * t84;
+        let t125 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t110 * t111
+            - t122 * t123;
+        ::overact::guard::platform(t125, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t125, 0.02560000000000001, "actuators")?;
+        let t126 = 1.0 / t125;
+        let t140 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t186 = g1_vy_leg1 * actuator_velocities[0]
+        let t151 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t175 * t116;
-        let t188 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t140 * t81;
+        let t153 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t175 * t146 - t158 * t186;
-        let rate_3_leg1 = t161 * t188;
-        let t190 = t3 * rate_3_leg1;
-        let t191 = rate_3_leg1 * t190;
-        let t193 = t7 * rate_3_leg1;
-        let t194 = rate_3_leg1 * t193;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let t202 = t119 * t186 - t158 * rate_3_leg1;
-        let t205 = t146 * rate_3_leg1 - (t175 * t115 + t116 * t202);
-        let t206 = t205 - t193;
-        let t208 = t202 + t190;
-        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
-        let t211 = rate_2_leg1 * rate_2_leg1;
-        let t212 = 0.34 * t211;
-        let rate_dot_1_leg1 = t24 * (t23 * t191 - t26 * t194 - t212);
-        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t47;
-        let t221 = t202 - t193;
-        let t223 = t205 - t190;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
-        let t226 = rate_2_leg2 * rate_2_leg2;
-        let t227 = 0.34 * t226;
-        let minus_rate_dot_1_leg2 = t47 * (t95 * t194 - t46 * t191 + t227);
-        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t69;
-        let t237 = t205 + t193;
-        let t239 = t202 - t190;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t243 = 0.34 * t242;
-        let minus_rate_dot_1_leg3 = t69 * (t100 * t191 + t68 * t194 + t243);
-        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t91;
-        let t250 = t205 + t190;
-        let t252 = t202 + t193;
-        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
-        let t255 = rate_2_leg4 * rate_2_leg4;
-        let t256 = 0.34 * t255;
-        let minus_rate_dot_1_leg4 = t91 * (t256 - (t104 * t194 + t90 * t191));
-        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
-            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
-        let t273 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
-            + g1_vy_leg4 * t262 + t116 * t271;
-        let t285 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
-            + g1_wz_leg4 * t262 - t146 * t271 - t158 * t273;
-        let rate_dot_3_leg1 = t161 * t285;
-        let t288 = t119 * t273 - t158 * rate_dot_3_leg1;
-        let t289 = t3 * rate_dot_3_leg1;
-        let t291 = t288 + t289 - t194;
-        let t297 = t146 * rate_dot_3_leg1 - (t115 * t271 + t116 * t288);
-        let t298 = t7 * rate_dot_3_leg1;
-        let t300 = t297 - t298 - t191;
-        let t303 = t26 * t291 - t23 * t300 - t212;
-        let rate_dot_1_leg1_2 = t24 * t303;
-        let t305 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
-        let t306 = g1_vy_leg1 * rate_dot_1_leg1_2;
-        let t307 = g1_wz_leg1 * rate_dot_1_leg1_2;
-        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
-        let t318 = t300 + t291;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * t318 + 0.7071067811865476 * t10 * t211);
-        let t324 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t24 - t6 * t24);
-        let c2_leg1 = 2.079725827019258 * t10;
-        let t331 = c2_leg1 * rate_dot_1_leg1_2;
-        let t332 = g2_vx_leg1 * t331;
-        let t335 = minus_s2_leg1 * t211 + c2_leg1 * rate_dot_2_leg1;
-        let t343 = g2_vx_leg1 * t303;
-        let t344 = 2.079725827019258 * t318;
-        let t352 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t354 = rate_3_leg1 - rate_2_leg1;
-        let t355 = ::overact::math::signed(g2_vx_leg1, t354);
-        let t359 = t297 - t289 + t194;
-        let t362 = t288 - t298 - t191;
-        let t365 = t95 * t359 + t46 * t362 + t227;
-        let minus_rate_dot_1_leg2_2 = t47 * t365;
-        let t367 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
-        let t368 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
-        let t369 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
-        let t380 = t359 - t362;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t47
-            * (0.7071067811865476 * t380 - 0.7071067811865476 * t44 * t226);
-        let t386 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t47 - t6 * t47);
-        let c2_leg2 = 2.079725827019258 * t44;
-        let t393 = c2_leg2 * minus_rate_dot_1_leg2_2;
-        let t394 = minus_g2_vx_leg2 * t393;
-        let t397 = minus_s2_leg2 * t226 - c2_leg2 * minus_rate_dot_2_leg2;
-        let t405 = 2.079725827019258 * t380;
-        let t407 = minus_g2_vx_leg2 * t365;
-        let t414 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t416 = rate_3_leg1 - rate_2_leg2;
-        let t417 = ::overact::math::signed(minus_g2_vx_leg2, t416);
-        let t421 = t297 + t298 + t191;
-        let t424 = t288 - t289 + t194;
-        let t427 = t100 * t421 + t68 * t424 + t243;
-        let minus_rate_dot_1_leg3_2 = t69 * t427;
-        let t429 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
-        let t430 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
-        let t431 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
-        let t442 = t421 + t424;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t69
-            * (0.7071067811865476 * t442 + 0.7071067811865476 * t66 * t242);
-        let t448 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t69 - t6 * t69);
-        let minus_c2_leg3 = 2.079725827019258 * t66;
-        let t457 = minus_s2_leg3 * t242 + minus_c2_leg3 * minus_rate_dot_2_leg3;
-        let t459 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t460 = minus_g2_vx_leg3 * t459;
-        let t467 = 2.079725827019258 * t442;
-        let t469 = minus_g2_vx_leg3 * t427;
-        let t476 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t478 = minus_rate_2_leg3 + rate_3_leg1;
-        let t479 = ::overact::math::signed(minus_g2_vx_leg3, t478);
-        let t483 = t297 + t289 - t194;
-        let t486 = t288 + t298 + t191;
-        let t489 = t104 * t483 - t90 * t486 + t256;
-        let minus_rate_dot_1_leg4_2 = t91 * t489;
-        let t491 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
-        let t492 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
-        let t493 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
-        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
-        let t504 = t486 - t483;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t91
-            * (0.7071067811865476 * t504 - 0.7071067811865476 * t88 * t255);
-        let t510 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t91 - t6 * t91);
-        let c2_leg4 = 2.079725827019258 * t88;
-        let t519 = minus_s2_leg4 * t255 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t521 = c2_leg4 * minus_rate_dot_1_leg4_2;
-        let t522 = g2_vx_leg4 * t521;
-        let t529 = 2.079725827019258 * t504;
-        let t531 = g2_vx_leg4 * t489;
-        let t538 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t540 = rate_3_leg1 - rate_2_leg4;
-        let t541 = ::overact::math::signed(g2_vx_leg4, t540);
-        let t544 = rate_3_leg1 * rate_3_leg1;
-        let t547 = c_phi * t544 + s_phi * rate_dot_3_leg1;
-        let t550 = c_phi * rate_dot_3_leg1 - s_phi * t544;
+            + g1_wz_leg4 * actuator_velocities[3] - t140 * t111 - t123 * t151;
+        let rate_3_leg1 = t126 * t153;
+        let t155 = t7 * rate_3_leg1;
+        let t156 = rate_3_leg1 * t155;
+        let t158 = t3 * rate_3_leg1;
+        let t159 = rate_3_leg1 * t158;
+        let g2_vx_leg1 = 2.079725827019258 * t18;
+        let t167 = t84 * t151 - t123 * rate_3_leg1;
+        let t170 = t111 * rate_3_leg1 - (t140 * t80 + t81 * t167);
+        let t171 = t170 - t158;
+        let t172 = t167 + t155;
+        let rate_2_leg1 = g2_vx_leg1 * (t171 + t172);
+        let t175 = rate_2_leg1 * rate_2_leg1;
+        let t176 = 0.34 * t175;
+        let rate_dot_1_leg1 = t18 * (t17 * t156 - t20 * t159 - t176);
+        let t179 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t32;
+        let t185 = t170 + t158;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t172 - t185);
+        let t188 = rate_2_leg2 * rate_2_leg2;
+        let t189 = 0.34 * t188;
+        let minus_rate_dot_1_leg2 = t32 * (t60 * t159 - t31 * t156 + t189);
+        let t192 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t45;
+        let t199 = t170 - t155;
+        let t200 = t167 + t158;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t199 + t200);
+        let t203 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t204 = 0.34 * t203;
+        let minus_rate_dot_1_leg3 = t45 * (t65 * t156 + t44 * t159 + t204);
+        let t207 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t56;
+        let t211 = t167 - t155;
+        let rate_2_leg4 = g2_vx_leg4 * (t171 - t211);
+        let t214 = rate_2_leg4 * rate_2_leg4;
+        let t215 = 0.34 * t214;
+        let minus_rate_dot_1_leg4 = t56 * (t215 - (t69 * t159 + t55 * t156));
+        let t221 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t230 = minus_g1_vx_leg1 * t179 + minus_g1_vx_leg2 * t192
+            + minus_g1_vx_leg3 * t207 + minus_g1_vx_leg4 * t221;
+        let t232 = g1_vy_leg1 * t179 - minus_g1_vy_leg2 * t192 - minus_g1_vy_leg3 * t207
+            + g1_vy_leg4 * t221 + t81 * t230;
+        let t244 = g1_wz_leg1 * t179 + g1_wz_leg2 * t192 + g1_wz_leg3 * t207
+            + g1_wz_leg4 * t221 - t111 * t230 - t123 * t232;
+        let rate_dot_3_leg1 = t126 * t244;
+        let t247 = t84 * t232 - t123 * rate_dot_3_leg1;
+        let t249 = t156 + t3 * rate_dot_3_leg1;
+        let t250 = t247 - t249;
+        let t255 = t111 * rate_dot_3_leg1 - (t80 * t230 + t81 * t247);
+        let t256 = t247 + t255;
+        let t257 = t256 - t250;
+        let t260 = t247 - t7 * rate_dot_3_leg1 + t159;
+        let t261 = t257 + t260;
+        let t262 = t247 + t249;
+        let t263 = t261 - t262;
+        let t264 = t263 - t250;
+        let t265 = t257 - t264;
+        let t267 = t256 - t260;
+        let t268 = t262 - t267;
+        let t269 = t260 - t268;
+        let t272 = t20 * t265 - t17 * t269 - t176;
+        let rate_dot_1_leg1_2 = t18 * t272;
+        let t274 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
+        let t275 = g1_vy_leg1 * rate_dot_1_leg1_2;
+        let t276 = g1_wz_leg1 * rate_dot_1_leg1_2;
+        let rate_1_leg1 = g1_vy_leg1 * t172 - minus_g1_vx_leg1 * t171;
+        let t287 = t269 + t265;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t18
+            * (0.7071067811865476 * t287 + t176 * c2_leg1);
+        let t292 = g2_vx_leg1 * rate_dot_2_leg1;
+        let t293 = t7 - t3;
+        let g2_wz_leg1 = g2_vx_leg1 * t293;
+        let t296 = c2_leg1 * rate_dot_1_leg1_2;
+        let t297 = g2_vx_leg1 * t296;
+        let t300 = minus_s2_leg1 * t175 + c2_leg1 * rate_dot_2_leg1;
+        let t308 = g2_vx_leg1 * t272;
+        let t309 = 2.079725827019258 * t287;
+        let t317 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t319 = rate_3_leg1 - rate_2_leg1;
+        let t320 = ::overact::math::signed(g2_vx_leg1, t319);
+        let t326 = t60 * t263 + t31 * t250 + t189;
+        let minus_rate_dot_1_leg2_2 = t32 * t326;
+        let t328 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
+        let t329 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
+        let t330 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t199
+            + minus_g1_vy_leg2 * (t167 - t158);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t32
+            * (0.7071067811865476 * t264 - t189 * c2_leg2);
+        let t346 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t293;
+        let t349 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t350 = minus_g2_vx_leg2 * t349;
+        let t353 = minus_s2_leg2 * t188 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t361 = 2.079725827019258 * t264;
+        let t363 = minus_g2_vx_leg2 * t326;
+        let t370 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t372 = rate_3_leg1 - rate_2_leg2;
+        let t373 = ::overact::math::signed(minus_g2_vx_leg2, t372);
+        let t379 = t65 * t257 + t44 * t260 + t204;
+        let minus_rate_dot_1_leg3_2 = t45 * t379;
+        let t381 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
+        let t382 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
+        let t383 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t185 + minus_g1_vy_leg3 * t211;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t45
+            * (0.7071067811865476 * t261 + t204 * minus_c2_leg3);
+        let t398 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t293;
+        let t403 = minus_s2_leg3 * t203 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t405 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t406 = minus_g2_vx_leg3 * t405;
+        let t413 = 2.079725827019258 * t261;
+        let t415 = minus_g2_vx_leg3 * t379;
+        let t422 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t424 = minus_rate_2_leg3 + rate_3_leg1;
+        let t425 = ::overact::math::signed(minus_g2_vx_leg3, t424);
+        let t431 = t69 * t267 - t55 * t262 + t215;
+        let minus_rate_dot_1_leg4_2 = t56 * t431;
+        let t433 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
+        let t434 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
+        let t435 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
+        let rate_1_leg4 = g1_vy_leg4 * t200 - minus_g1_vx_leg4 * (t170 + t155);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t56
+            * (0.7071067811865476 * t268 - t215 * c2_leg4);
+        let t451 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t293;
+        let t456 = minus_s2_leg4 * t214 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t458 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t459 = g2_vx_leg4 * t458;
+        let t466 = 2.079725827019258 * t268;
+        let t468 = g2_vx_leg4 * t431;
+        let t475 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t477 = rate_3_leg1 - rate_2_leg4;
+        let t478 = ::overact::math::signed(g2_vx_leg4, t477);
+        let t481 = rate_3_leg1 * rate_3_leg1;
+        let t484 = c_phi * t481 + s_phi * rate_dot_3_leg1;
+        let t487 = s_phi * t481 - c_phi * rate_dot_3_leg1;
         Ok([
             [
-                -t305, -t305, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t324,
-                t332 - minus_g1_vx_leg1 * t335, t343 - minus_g1_vx_leg1 * t344, -t305, t352, -t355,
-                t367, t367, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -t274, -t274, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t292,
+                t297 - minus_g1_vx_leg1 * t300, t308 - minus_g1_vx_leg1 * t309, -t274, t317, -t320,
+                t328, t328, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t386, t394 - minus_g1_vx_leg2 * t397, minus_g1_vx_leg2 * t405 + t407, t367, -t414,
-                t417, t429, t429, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                t346, t350 - minus_g1_vx_leg2 * t353, minus_g1_vx_leg2 * t361 + t363, t328, -t370,
+                t373, t381, t381, minus_g1_vx_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
-                t448, -(minus_g1_vx_leg3 * t457 + t460), minus_g1_vx_leg3 * t467 + t469, t429, t476,
-                t479, t491, t491, -(minus_g1_vx_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t510,
-                -(minus_g1_vx_leg4 * t519 + t522), minus_g1_vx_leg4 * t529 - t531, t491, t538,
-                -t541, 0.0, -t547, -t550, t297,
+                t398, -(minus_g1_vx_leg3 * t403 + t406), minus_g1_vx_leg3 * t413 + t415, t381, t422,
+                t425, t433, t433, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t451,
+                -(minus_g1_vx_leg4 * t456 + t459), minus_g1_vx_leg4 * t466 - t468, t433, t475,
+                -t478, 0.0, -t484, t487, t255,
             ],
             [
-                t306, t306, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t324,
-                g1_vy_leg1 * t335 + t332, g1_vy_leg1 * t344 + t343, t306, t352, -t355, t368, t368,
+                t275, t275, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t292,
+                g1_vy_leg1 * t300 + t297, g1_vy_leg1 * t309 + t308, t275, t317, -t320, t329, t329,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t386, -(minus_g1_vy_leg2 * t397 + t394), minus_g1_vy_leg2 * t405 - t407, t368,
-                t414, -t417, t430, t430, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                -t346, -(minus_g1_vy_leg2 * t353 + t350), minus_g1_vy_leg2 * t361 - t363, t329,
+                t370, -t373, t382, t382, minus_g1_vy_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
-                t448, -(minus_g1_vy_leg3 * t457 + t460), minus_g1_vy_leg3 * t467 + t469, t430, t476,
-                t479, -t492, -t492, g1_vy_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t510,
-                g1_vy_leg4 * t519 + t522, t531 - g1_vy_leg4 * t529, -t492, -t538, t541, 0.0, t550,
-                -t547, t288,
+                t398, -(minus_g1_vy_leg3 * t403 + t406), minus_g1_vy_leg3 * t413 + t415, t382, t422,
+                t425, -t434, -t434, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t451,
+                g1_vy_leg4 * t456 + t459, t468 - g1_vy_leg4 * t466, -t434, -t475, t478, 0.0, -t487,
+                -t484, t247,
             ],
             [
-                t307, t307, g1_wz_leg1 * rate_1_leg1,
+                t276, t276, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t335 + g2_wz_leg1 * t331,
-                g1_wz_leg1 * t344 + g2_wz_leg1 * t303, t307,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t300 + g2_wz_leg1 * t296,
+                g1_wz_leg1 * t309 + g2_wz_leg1 * t272, t276,
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t354), -t369, -t369,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t319), -t330, -t330,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t397 - g2_wz_leg2 * t393,
-                -(g1_wz_leg2 * t405 + g2_wz_leg2 * t365), -t369,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t353 - g2_wz_leg2 * t349,
+                -(g1_wz_leg2 * t361 + g2_wz_leg2 * t326), -t330,
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t416), -t431, -t431,
+                ::overact::math::signed(1.0 - g2_wz_leg2, t372), -t383, -t383,
                 -(g1_wz_leg3 * minus_rate_1_leg3),
                 -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t457 + g2_wz_leg3 * t459,
-                -(g1_wz_leg3 * t467 + g2_wz_leg3 * t427), -t431,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t403 + g2_wz_leg3 * t405,
+                -(g1_wz_leg3 * t413 + g2_wz_leg3 * t379), -t383,
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t478), -t493, -t493,
+                ::overact::math::signed(1.0 - g2_wz_leg3, t424), -t435, -t435,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
                 g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
-                g1_wz_leg4 * t519 - g2_wz_leg4 * t521, -(g1_wz_leg4 * t529 + g2_wz_leg4 * t489),
-                -t493, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t540), rate_dot_3_leg1,
-                c_phi * t288 - s_phi * t297, -(c_phi * t297 + s_phi * t288), 0.0,
+                g1_wz_leg4 * t456 - g2_wz_leg4 * t458, -(g1_wz_leg4 * t466 + g2_wz_leg4 * t431),
+                -t435, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t477), rate_dot_3_leg1,
+                c_phi * t247 - s_phi * t255, -(s_phi * t247 + c_phi * t255), 0.0,
             ],
         ])
     }
@@ -2089,7 +2070,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 502 operations (194 additions, 303 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 445 intermediates.
+    /// 491 operations (187 additions, 299 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 434 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2099,271 +2080,276 @@ impl Planar4Prr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 1.0 / minus_s2_leg1;
-        let t21 = 0.7071067811865476 * minus_s2_leg1;
-        let t22 = t9 + t5;
-        let t23 = 1.4705882352941178 * t22;
-        let t24 = t21 - t23;
-        let t25 = t7 * acceleration[2];
-        let t27 = t3 * twist[2];
-        let t28 = twist[2] * t27;
-        let t29 = acceleration[1] + t25 - t28;
-        let t31 = t23 + t21;
-        let t32 = t3 * acceleration[2];
-        let t34 = t7 * twist[2];
-        let t35 = twist[2] * t34;
-        let t36 = acceleration[0] - t32 - t35;
-        let g2_vx_leg1 = 2.079725827019258 * t20;
-        let t40 = twist[0] - t27;
-        let t42 = twist[1] + t34;
-        let rate_2_leg1 = g2_vx_leg1 * t40 + g2_vx_leg1 * t42;
-        let t45 = rate_2_leg1 * rate_2_leg1;
-        let t47 = t24 * t29 - t31 * t36 - 0.34 * t45;
-        let rate_dot_1_leg1 = t20 * t47;
-        let g1_vy_leg1 = t24 * t20;
-        let minus_g1_vx_leg1 = t31 * t20;
-        let rate_1_leg1 = g1_vy_leg1 * t42 - minus_g1_vx_leg1 * t40;
-        let t56 = pose[0] - t3 + 0.21213203435596426;
-        let t58 = pose[1] + t7 - 0.21213203435596426;
-        let t59 = t56 + t58;
-        let t67 = 8.650519031141869
-            * (0.5 * (t59 * t59) - (t56 * t56 + t58 * t58 - 0.1156));
-        ::overact::guard::reach(t67, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t67);
+        let t32 = 1.0 / minus_s2_leg1;
+        let t33 = 0.7071067811865476 * minus_s2_leg1;
+        let t34 = t21 + t19;
+        let t35 = 1.4705882352941178 * t34;
+        let t36 = t33 - t35;
+        let t37 = t7 * acceleration[2];
+        let t39 = t3 * twist[2];
+        let t40 = twist[2] * t39;
+        let t41 = acceleration[0] + t37 + t40;
+        let t42 = t3 * acceleration[2];
+        let t44 = t7 * twist[2];
+        let t45 = twist[2] * t44;
+        let t46 = acceleration[1] - t42 + t45;
+        let t47 = t41 + t46;
+        let t49 = acceleration[1] + t37 + t40;
+        let t50 = t47 - t49;
+        let t52 = acceleration[1] - t37 - t40;
+        let t53 = t50 - t52;
+        let t54 = t41 - t53;
+        let t56 = t35 + t33;
+        let t58 = acceleration[0] + t42 - t45;
+        let t59 = t49 - t58;
+        let t60 = t46 - t59;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let t64 = twist[0] - t44;
+        let t66 = twist[1] + t39;
+        let rate_2_leg1 = g2_vx_leg1 * t64 + g2_vx_leg1 * t66;
+        let t69 = rate_2_leg1 * rate_2_leg1;
+        let t70 = 0.34 * t69;
+        let t71 = t36 * t54 - t56 * t60 - t70;
+        let rate_dot_1_leg1 = t32 * t71;
+        let g1_vy_leg1 = t36 * t32;
+        let minus_g1_vx_leg1 = t56 * t32;
+        let rate_1_leg1 = g1_vy_leg1 * t66 - minus_g1_vx_leg1 * t64;
+        let t86 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t86, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t86);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t69 = 0.7071067811865476 * minus_s2_leg2;
-        let t70 = t58 - t56;
-        let t71 = 1.4705882352941178 * t70;
-        let t72 = t69 + t71;
-        let t73 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t72 * t73;
-        let t76 = t69 - t71;
-        let minus_g1_vx_leg2 = t76 * t73;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let t81 = pose[0] - t7 + 0.21213203435596426;
-        let t83 = pose[1] - t3 + 0.21213203435596426;
-        let t84 = t81 - t83;
-        let t92 = 8.650519031141869
-            * (0.5 * (t84 * t84) - (t81 * t81 + t83 * t83 - 0.1156));
-        ::overact::guard::reach(t92, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t92);
+        let t88 = 0.7071067811865476 * minus_s2_leg2;
+        let t89 = 1.4705882352941178 * t18;
+        let t90 = t88 + t89;
+        let t91 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t90 * t91;
+        let t94 = t88 - t89;
+        let minus_g1_vx_leg2 = t94 * t91;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t105 = 8.650519031141869
+            * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t105, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t105);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t94 = 0.7071067811865476 * minus_s2_leg3;
-        let t95 = t81 + t83;
-        let t96 = 1.4705882352941178 * t95;
-        let t97 = t94 + t96;
-        let t98 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t97 * t98;
-        let t102 = t96 - t94;
-        let minus_g1_vx_leg3 = t102 * t98;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let t113 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t117 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
-        let t122 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t124 = minus_g1_vx_leg2 * t113 + minus_g1_vy_leg2 * t117 - g1_wz_leg2 * t122;
-        ::overact::guard::platform(t124, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t124, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t124, 0.2752380952380954, "kept actuators")?;
-        let t125 = 1.0 / t124;
-        let t126 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
-            * t125;
-        let t131 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
-            * t125;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
-        let t141 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
-            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t125;
-        let t143 = g2_vx_leg1 * t126 - g2_vx_leg1 * t131 + g2_wz_leg1 * t141;
-        let t145 = t36 + t29;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t20
-            * (0.7071067811865476 * t145 + 0.7071067811865476 * t22 * t45);
-        let t152 = t113 * t125;
-        let t154 = t117 * t125;
-        let t157 = t122 * t125;
-        let t159 = g2_vx_leg1 * t152 + g2_vx_leg1 * t154 + g2_wz_leg1 * t157;
-        let t164 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t125;
-        let t169 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
-            * t125;
-        let t175 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
-            * t125;
-        let t177 = g2_vx_leg1 * t164 + g2_vx_leg1 * t169 + g2_wz_leg1 * t175;
-        let c2_leg1 = 2.079725827019258 * t22;
-        let t183 = c2_leg1 * rate_dot_1_leg1;
-        let t197 = twist[2] - rate_2_leg1;
-        let t204 = acceleration[0] - t25 + t28;
-        let t207 = acceleration[1] - t32 - t35;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t73;
-        let t211 = twist[1] - t27;
-        let t213 = twist[0] - t34;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t211 - minus_g2_vx_leg2 * t213;
-        let t216 = rate_2_leg2 * rate_2_leg2;
-        let t218 = t76 * t204 + t72 * t207 + 0.34 * t216;
-        let minus_rate_dot_1_leg2 = t73 * t218;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t213 + minus_g1_vy_leg2 * t211;
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t73 - t2 * t73);
-        let t232 = g2_wz_leg2 * t141
-            - (minus_g2_vx_leg2 * t126 + minus_g2_vx_leg2 * t131);
-        let t234 = t204 - t207;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t73
-            * (0.7071067811865476 * t234 - 0.7071067811865476 * t70 * t216);
-        let t245 = minus_g2_vx_leg2 * t152 - minus_g2_vx_leg2 * t154 - g2_wz_leg2 * t157;
-        let t251 = minus_g2_vx_leg2 * t169 - minus_g2_vx_leg2 * t164 + g2_wz_leg2 * t175;
-        let c2_leg2 = 2.079725827019258 * t70;
-        let t254 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t271 = twist[2] - rate_2_leg2;
-        let t278 = acceleration[0] + t32 + t35;
-        let t281 = acceleration[1] - t25 + t28;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t98;
-        let t285 = twist[0] + t27;
-        let t287 = twist[1] - t34;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t285 + minus_g2_vx_leg3 * t287;
-        let t290 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t292 = t102 * t278 + t97 * t281 + 0.34 * t290;
-        let minus_rate_dot_1_leg3 = t98 * t292;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t285 + minus_g1_vy_leg3 * t287;
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t98 - t2 * t98);
-        let t306 = minus_g2_vx_leg3 * t131 - minus_g2_vx_leg3 * t126 + g2_wz_leg3 * t141;
-        let t308 = t278 + t281;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t98
-            * (0.7071067811865476 * t308 + 0.7071067811865476 * t95 * t290);
-        let t319 = minus_g2_vx_leg3 * t152 + minus_g2_vx_leg3 * t154 - g2_wz_leg3 * t157;
-        let t325 = g2_wz_leg3 * t175
-            - (minus_g2_vx_leg3 * t164 + minus_g2_vx_leg3 * t169);
-        let minus_c2_leg3 = 2.079725827019258 * t95;
-        let t328 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t345 = minus_rate_2_leg3 + twist[2];
-        let t352 = pose[0] + t3 - 0.21213203435596426;
-        let t354 = pose[1] - t7 + 0.21213203435596426;
-        let t355 = t352 + t354;
-        let t363 = 8.650519031141869
-            * (0.5 * (t355 * t355) - (t352 * t352 + t354 * t354 - 0.1156));
-        ::overact::guard::reach(t363, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t363);
+        let t107 = 0.7071067811865476 * minus_s2_leg3;
+        let t108 = 1.4705882352941178 * t14;
+        let t109 = t107 + t108;
+        let t110 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t109 * t110;
+        let t114 = t108 - t107;
+        let minus_g1_vx_leg3 = t114 * t110;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let t125 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t129 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let t134 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t136 = minus_g1_vx_leg2 * t125 + minus_g1_vy_leg2 * t129 - g1_wz_leg2 * t134;
+        ::overact::guard::platform(t136, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t136, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t136, 0.2752380952380954, "kept actuators")?;
+        let t137 = 1.0 / t136;
+        let t138 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t137;
+        let t143 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t137;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t32 - t6 * t32);
+        let t153 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t137;
+        let t155 = g2_vx_leg1 * t138 - g2_vx_leg1 * t143 + g2_wz_leg1 * t153;
+        let t157 = t60 + t54;
+        let c2_leg1 = 2.079725827019258 * t34;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t32
+            * (0.7071067811865476 * t157 + t70 * c2_leg1);
+        let t164 = t125 * t137;
+        let t166 = t129 * t137;
+        let t169 = t134 * t137;
+        let t171 = g2_vx_leg1 * t164 + g2_vx_leg1 * t166 + g2_wz_leg1 * t169;
+        let t176 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t137;
+        let t181 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t137;
+        let t187 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t137;
+        let t189 = g2_vx_leg1 * t176 + g2_vx_leg1 * t181 + g2_wz_leg1 * t187;
+        let t194 = c2_leg1 * rate_dot_1_leg1;
+        let t208 = twist[2] - rate_2_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t91;
+        let t218 = twist[1] - t44;
+        let t220 = twist[0] - t39;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t218 - minus_g2_vx_leg2 * t220;
+        let t223 = rate_2_leg2 * rate_2_leg2;
+        let t224 = 0.34 * t223;
+        let t225 = t94 * t50 + t90 * t52 + t224;
+        let minus_rate_dot_1_leg2 = t91 * t225;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t220 + minus_g1_vy_leg2 * t218;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t91 - t6 * t91);
+        let t239 = g2_wz_leg2 * t153
+            - (minus_g2_vx_leg2 * t138 + minus_g2_vx_leg2 * t143);
+        let c2_leg2 = 2.079725827019258 * t18;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t91
+            * (0.7071067811865476 * t53 - c2_leg2 * t224);
+        let t251 = minus_g2_vx_leg2 * t164 - minus_g2_vx_leg2 * t166 - g2_wz_leg2 * t169;
+        let t257 = minus_g2_vx_leg2 * t181 - minus_g2_vx_leg2 * t176 + g2_wz_leg2 * t187;
+        let t259 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t276 = twist[2] - rate_2_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t110;
+        let t286 = twist[0] + t44;
+        let t288 = twist[1] - t39;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t286 + minus_g2_vx_leg3 * t288;
+        let t291 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t292 = 0.34 * t291;
+        let t293 = t114 * t41 + t109 * t46 + t292;
+        let minus_rate_dot_1_leg3 = t110 * t293;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t286 + minus_g1_vy_leg3 * t288;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t110 - t6 * t110);
+        let t307 = minus_g2_vx_leg3 * t143 - minus_g2_vx_leg3 * t138 + g2_wz_leg3 * t153;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t110
+            * (0.7071067811865476 * t47 + minus_c2_leg3 * t292);
+        let t319 = minus_g2_vx_leg3 * t164 + minus_g2_vx_leg3 * t166 - g2_wz_leg3 * t169;
+        let t325 = g2_wz_leg3 * t187
+            - (minus_g2_vx_leg3 * t176 + minus_g2_vx_leg3 * t181);
+        let t327 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t344 = minus_rate_2_leg3 + twist[2];
+        let t350 = t12 + t16;
+        let t358 = 8.650519031141869
+            * (0.5 * (t350 * t350) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t358, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t358);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t365 = 0.7071067811865476 * minus_s2_leg4;
-        let t366 = t352 - t354;
-        let t367 = 1.4705882352941178 * t366;
-        let t368 = t365 + t367;
-        let t369 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t368 * t369;
-        let t372 = t367 - t365;
-        let minus_g1_vx_leg4 = t372 * t369;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t380 = g1_wz_leg4 * t141 - (minus_g1_vx_leg4 * t126 + g1_vy_leg4 * t131);
-        let t382 = acceleration[0] + t25 - t28;
-        let t385 = acceleration[1] + t32 + t35;
-        let g2_vx_leg4 = 2.079725827019258 * t369;
-        let t389 = twist[0] + t34;
-        let t391 = twist[1] + t27;
-        let rate_2_leg4 = g2_vx_leg4 * t389 - g2_vx_leg4 * t391;
-        let t394 = rate_2_leg4 * rate_2_leg4;
-        let t396 = t372 * t382 - t368 * t385 + 0.34 * t394;
-        let minus_rate_dot_1_leg4 = t369 * t396;
-        let t398 = t380 * minus_rate_dot_1_leg4;
-        let t403 = minus_g1_vx_leg4 * t152 - g1_vy_leg4 * t154 - g1_wz_leg4 * t157;
-        let t404 = t403 * minus_rate_dot_1_leg4;
-        let t409 = g1_vy_leg4 * t169 - minus_g1_vx_leg4 * t164 + g1_wz_leg4 * t175;
-        let t410 = t409 * minus_rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vy_leg4 * t391 - minus_g1_vx_leg4 * t389;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t369 - t2 * t369);
-        let t428 = g2_vx_leg4 * t126 + g2_vx_leg4 * t131 + g2_wz_leg4 * t141;
-        let t430 = t385 - t382;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t369
-            * (0.7071067811865476 * t430 - 0.7071067811865476 * t366 * t394);
-        let t441 = g2_vx_leg4 * t154 - g2_vx_leg4 * t152 - g2_wz_leg4 * t157;
-        let t447 = g2_vx_leg4 * t164 - g2_vx_leg4 * t169 + g2_wz_leg4 * t175;
-        let c2_leg4 = 2.079725827019258 * t366;
-        let t452 = minus_s2_leg4 * t394 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t454 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t463 = 2.079725827019258 * t430;
-        let t477 = twist[2] - rate_2_leg4;
-        let t488 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t490 = twist[2] * twist[2];
-        let t493 = c_phi * t490 + s_phi * acceleration[2];
-        let t497 = c_phi * acceleration[2] - s_phi * t490;
-        let t516 = c_phi * acceleration[0] + s_phi * acceleration[1];
+        let t360 = 0.7071067811865476 * minus_s2_leg4;
+        let t361 = t12 - t16;
+        let t362 = 1.4705882352941178 * t361;
+        let t363 = t360 + t362;
+        let t364 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t363 * t364;
+        let t367 = t362 - t360;
+        let minus_g1_vx_leg4 = t367 * t364;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t375 = g1_wz_leg4 * t153 - (minus_g1_vx_leg4 * t138 + g1_vy_leg4 * t143);
+        let g2_vx_leg4 = 2.079725827019258 * t364;
+        let t380 = twist[0] + t39;
+        let t382 = twist[1] + t44;
+        let rate_2_leg4 = g2_vx_leg4 * t380 - g2_vx_leg4 * t382;
+        let t385 = rate_2_leg4 * rate_2_leg4;
+        let t386 = 0.34 * t385;
+        let t387 = t367 * t58 - t363 * t49 + t386;
+        let minus_rate_dot_1_leg4 = t364 * t387;
+        let t389 = t375 * minus_rate_dot_1_leg4;
+        let t394 = minus_g1_vx_leg4 * t164 - g1_vy_leg4 * t166 - g1_wz_leg4 * t169;
+        let t395 = t394 * minus_rate_dot_1_leg4;
+        let t400 = g1_vy_leg4 * t181 - minus_g1_vx_leg4 * t176 + g1_wz_leg4 * t187;
+        let t401 = t400 * minus_rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vy_leg4 * t382 - minus_g1_vx_leg4 * t380;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t364 - t6 * t364);
+        let t419 = g2_vx_leg4 * t138 + g2_vx_leg4 * t143 + g2_wz_leg4 * t153;
+        let c2_leg4 = 2.079725827019258 * t361;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t364
+            * (0.7071067811865476 * t59 - t386 * c2_leg4);
+        let t431 = g2_vx_leg4 * t166 - g2_vx_leg4 * t164 - g2_wz_leg4 * t169;
+        let t437 = g2_vx_leg4 * t176 - g2_vx_leg4 * t181 + g2_wz_leg4 * t187;
+        let t441 = minus_s2_leg4 * t385 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t443 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t452 = 2.079725827019258 * t59;
+        let t466 = twist[2] - rate_2_leg4;
+        let t475 = twist[2] * twist[2];
+        let t478 = s_phi * t475 - c_phi * acceleration[2];
+        let t482 = c_phi * t475 + s_phi * acceleration[2];
+        let t487 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t505 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, t143 * rate_dot_2_leg1,
-                minus_s2_leg1 * t45 + c2_leg1 * rate_dot_2_leg1 + t143 * t183,
-                2.079725827019258 * t145 + t143 * t47, rate_dot_1_leg1,
-                ::overact::math::signed(t143, rate_2_leg1),
-                ::overact::math::signed(t141 - t143, t197), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t232 * minus_rate_dot_2_leg2), -(t232 * t254), -(t232 * t218), 0.0,
-                ::overact::math::signed(t232, rate_2_leg2),
-                ::overact::math::signed(t141 - t232, t271), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t306 * minus_rate_dot_2_leg3), t306 * t328, -(t306 * t292), 0.0,
-                -::overact::math::signed(t306, minus_rate_2_leg3),
-                ::overact::math::signed(t141 - t306, t345), -t398, -t398, t380 * rate_1_leg4,
-                ::overact::math::signed(t380, rate_1_leg4), t380, -(t428 * minus_rate_dot_2_leg4),
-                t380 * t452 - t428 * t454, -(t380 * t463 + t428 * t396), -t398,
-                ::overact::math::signed(t428, rate_2_leg4),
-                ::overact::math::signed(t141 - t428, t477), t141 * acceleration[2],
-                t141 * t488 - (t126 * t493 + t131 * t497), t131 * t493 - t126 * t497 - t141 * t516,
-                t126 * acceleration[0] - t131 * acceleration[1],
+                1.0, t155 * rate_dot_2_leg1,
+                minus_s2_leg1 * t69 + c2_leg1 * rate_dot_2_leg1 + t155 * t194,
+                2.079725827019258 * t157 + t155 * t71, rate_dot_1_leg1,
+                ::overact::math::signed(t155, rate_2_leg1),
+                ::overact::math::signed(t153 - t155, t208), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t239 * minus_rate_dot_2_leg2), -(t239 * t259), -(t239 * t225), 0.0,
+                ::overact::math::signed(t239, rate_2_leg2),
+                ::overact::math::signed(t153 - t239, t276), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t307 * minus_rate_dot_2_leg3), t307 * t327, -(t307 * t293), 0.0,
+                -::overact::math::signed(t307, minus_rate_2_leg3),
+                ::overact::math::signed(t153 - t307, t344), -t389, -t389, t375 * rate_1_leg4,
+                ::overact::math::signed(t375, rate_1_leg4), t375, -(t419 * minus_rate_dot_2_leg4),
+                t375 * t441 - t419 * t443, -(t375 * t452 + t419 * t387), -t389,
+                ::overact::math::signed(t419, rate_2_leg4),
+                ::overact::math::signed(t153 - t419, t466), t153 * acceleration[2],
+                t143 * t478 - t138 * t482 + t153 * t487, t138 * t478 + t143 * t482 - t153 * t505,
+                t138 * acceleration[0] - t143 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t159 * rate_dot_2_leg1), -(t159 * t183), -(t159 * t47),
-                0.0, -::overact::math::signed(t159, rate_2_leg1),
-                ::overact::math::signed(t159 - t157, t197), -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t171 * rate_dot_2_leg1), -(t171 * t194), -(t171 * t71),
+                0.0, -::overact::math::signed(t171, rate_2_leg1),
+                ::overact::math::signed(t171 - t169, t208), -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t245 * minus_rate_dot_2_leg2),
-                minus_s2_leg2 * t216 - c2_leg2 * minus_rate_dot_2_leg2 - t245 * t254,
-                -(2.079725827019258 * t234 + t245 * t218), -minus_rate_dot_1_leg2,
-                ::overact::math::signed(t245, rate_2_leg2),
-                -::overact::math::signed(t245 + t157, t271), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t319 * minus_rate_dot_2_leg3), t319 * t328, -(t319 * t292), 0.0,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t251 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t223 - c2_leg2 * minus_rate_dot_2_leg2 - t251 * t259,
+                -(2.079725827019258 * t53 + t251 * t225), -minus_rate_dot_1_leg2,
+                ::overact::math::signed(t251, rate_2_leg2),
+                -::overact::math::signed(t251 + t169, t276), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t319 * minus_rate_dot_2_leg3), t319 * t327, -(t319 * t293), 0.0,
                 -::overact::math::signed(t319, minus_rate_2_leg3),
-                -::overact::math::signed(t319 + t157, t345), -t404, -t404, t403 * rate_1_leg4,
-                ::overact::math::signed(t403, rate_1_leg4), t403, -(t441 * minus_rate_dot_2_leg4),
-                t403 * t452 - t441 * t454, -(t403 * t463 + t441 * t396), -t404,
-                ::overact::math::signed(t441, rate_2_leg4),
-                -::overact::math::signed(t441 + t157, t477), -(t157 * acceleration[2]),
-                t152 * t493 - t154 * t497 - t157 * t488, t152 * t497 + t154 * t493 + t157 * t516,
-                -(t152 * acceleration[0] + t154 * acceleration[1]),
+                -::overact::math::signed(t319 + t169, t344), -t395, -t395, t394 * rate_1_leg4,
+                ::overact::math::signed(t394, rate_1_leg4), t394, -(t431 * minus_rate_dot_2_leg4),
+                t394 * t441 - t431 * t443, -(t394 * t452 + t431 * t387), -t395,
+                ::overact::math::signed(t431, rate_2_leg4),
+                -::overact::math::signed(t431 + t169, t466), -(t169 * acceleration[2]),
+                t164 * t482 + t166 * t478 - t169 * t487, t166 * t482 - t164 * t478 + t169 * t505,
+                -(t164 * acceleration[0] + t166 * acceleration[1]),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t177 * rate_dot_2_leg1, t177 * t183, t177 * t47, 0.0,
-                ::overact::math::signed(t177, rate_2_leg1),
-                ::overact::math::signed(t175 - t177, t197), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t251 * minus_rate_dot_2_leg2), -(t251 * t254), -(t251 * t218), 0.0,
-                ::overact::math::signed(t251, rate_2_leg2),
-                ::overact::math::signed(t175 - t251, t271), -minus_rate_dot_1_leg3,
+                0.0, 0.0, 0.0, 0.0, 0.0, t189 * rate_dot_2_leg1, t189 * t194, t189 * t71, 0.0,
+                ::overact::math::signed(t189, rate_2_leg1),
+                ::overact::math::signed(t187 - t189, t208), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t257 * minus_rate_dot_2_leg2), -(t257 * t259), -(t257 * t225), 0.0,
+                ::overact::math::signed(t257, rate_2_leg2),
+                ::overact::math::signed(t187 - t257, t276), -minus_rate_dot_1_leg3,
                 -minus_rate_dot_1_leg3, -minus_rate_1_leg3,
                 -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t325 * minus_rate_dot_2_leg3),
-                minus_s2_leg3 * t290 + minus_c2_leg3 * minus_rate_dot_2_leg3
-                    + t325 * t328,
-                -(2.079725827019258 * t308 + t325 * t292),
+                minus_s2_leg3 * t291 + minus_c2_leg3 * minus_rate_dot_2_leg3
+                    + t325 * t327,
+                -(2.079725827019258 * t47 + t325 * t293),
                 -minus_rate_dot_1_leg3,
                 -::overact::math::signed(t325, minus_rate_2_leg3),
-                ::overact::math::signed(t175 - t325, t345),
-                -t410,
-                -t410,
-                t409 * rate_1_leg4,
-                ::overact::math::signed(t409, rate_1_leg4),
-                t409,
-                -(t447 * minus_rate_dot_2_leg4),
-                t409 * t452 - t447 * t454,
-                -(t409 * t463 + t447 * t396),
-                -t410,
-                ::overact::math::signed(t447, rate_2_leg4),
-                ::overact::math::signed(t175 - t447, t477),
-                t175 * acceleration[2],
-                t169 * t497 - t164 * t493 + t175 * t488,
-                -(t164 * t497 + t169 * t493 + t175 * t516),
-                t164 * acceleration[0] + t169 * acceleration[1],
+                ::overact::math::signed(t187 - t325, t344),
+                -t401,
+                -t401,
+                t400 * rate_1_leg4,
+                ::overact::math::signed(t400, rate_1_leg4),
+                t400,
+                -(t437 * minus_rate_dot_2_leg4),
+                t400 * t441 - t437 * t443,
+                -(t400 * t452 + t437 * t387),
+                -t401,
+                ::overact::math::signed(t437, rate_2_leg4),
+                ::overact::math::signed(t187 - t437, t466),
+                t187 * acceleration[2],
+                t187 * t487 - (t176 * t482 + t181 * t478),
+                t176 * t478 - t181 * t482 - t187 * t505,
+                t176 * acceleration[0] + t181 * acceleration[1],
             ],
         ])
     }
@@ -2378,7 +2364,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 446 operations (160 additions, 281 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 393 intermediates.
+    /// 441 operations (157 additions, 279 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 388 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2400,106 +2386,110 @@ impl Planar4Prr {
         let t3 = 1.0 / s2_leg1;
         let t4 = 0.7071067811865476 * t3;
         let g1_vx_leg1 = t2 * t4;
-        let t8 = s_phi + c_phi;
+        let t8 = c_phi - s_phi;
         let t9 = 0.05656854249492381 * t8;
         let t10 = t9 * acceleration[2];
-        let t12 = c_phi - s_phi;
+        let t12 = s_phi + c_phi;
         let t13 = 0.05656854249492381 * t12;
         let t14 = t13 * twist[2];
         let t15 = twist[2] * t14;
-        let t17 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
+        let t16 = acceleration[1] - t10 + t15;
+        let t17 = t13 * acceleration[2];
         let t19 = t9 * twist[2];
-        let t20 = twist[0] - t19;
-        let t22 = twist[1] + t14;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t20 + minus_g2_vx_leg1 * t22;
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t27 = acceleration[0] - t10 - t15 + t17 * t25;
-        let t29 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t29 * t4;
-        let t31 = t13 * acceleration[2];
-        let t33 = twist[2] * t19;
-        let t35 = 0.2404163056034262 * t29;
-        let t37 = acceleration[1] + t31 - t33 + t35 * t25;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t37;
-        let rate_1_leg1 = g1_vx_leg1 * t20 + g1_vy_leg1 * t22;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t8 - t3 * t12);
-        let t50 = c2_leg2 + s2_leg2;
-        let t51 = 1.0 / s2_leg2;
-        let t52 = 0.7071067811865476 * t51;
-        let minus_g1_vx_leg2 = t50 * t52;
-        let t56 = s2_leg3 + c2_leg3;
-        let t57 = 1.0 / s2_leg3;
-        let t58 = 0.7071067811865476 * t57;
-        let minus_g1_vy_leg3 = t56 * t58;
-        let t61 = s2_leg2 - c2_leg2;
-        let minus_g1_vy_leg2 = t61 * t52;
-        let t63 = s2_leg3 - c2_leg3;
-        let g1_vx_leg3 = t63 * t58;
-        let g1_wz_leg1 = g1_vy_leg1 * t13 - g1_vx_leg1 * t9;
-        let g1_wz_leg3 = t13 * minus_g1_vy_leg3 + t9 * g1_vx_leg3;
-        let t75 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t79 = g1_wz_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_wz_leg3;
-        let g1_wz_leg2 = t9 * minus_g1_vy_leg2 + t13 * minus_g1_vx_leg2;
-        let t87 = g1_vy_leg1 * g1_vx_leg3 + g1_vx_leg1 * minus_g1_vy_leg3;
-        let t89 = minus_g1_vx_leg2 * t75 + minus_g1_vy_leg2 * t79 + g1_wz_leg2 * t87;
-        ::overact::guard::platform(t89, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t89, 0.2752380952380029, "kept actuators")?;
-        ::overact::guard::platform(t89, 0.2752380952380029, "kept actuators")?;
-        let t90 = 1.0 / t89;
-        let t91 = (minus_g1_vx_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * g1_vx_leg3)
-            * t90;
-        let t96 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t90;
-        let t101 = (minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t90;
-        let t104 = g2_wz_leg1 * t91 - (minus_g2_vx_leg1 * t96 + minus_g2_vx_leg1 * t101);
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t27 + minus_g2_vx_leg1 * t37;
-        let t109 = t75 * t90;
-        let t111 = t79 * t90;
-        let t114 = t87 * t90;
-        let t116 = minus_g2_vx_leg1 * t109 + minus_g2_vx_leg1 * t111 + g2_wz_leg1 * t114;
-        let t121 = (g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t90;
-        let t126 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t90;
-        let t132 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t90;
-        let t134 = minus_g2_vx_leg1 * t121 - minus_g2_vx_leg1 * t126 - g2_wz_leg1 * t132;
-        let t136 = c2_leg1 * rate_dot_1_leg1;
-        let t147 = s2_leg1 * rate_dot_1_leg1;
-        let t156 = minus_rate_2_leg1 + twist[2];
-        let t164 = t2 * t17 + t29 * t35;
-        let g2_vx_leg2 = 2.079725827019258 * t51;
-        let t166 = twist[0] - t14;
-        let t168 = twist[1] - t19;
-        let rate_2_leg2 = g2_vx_leg2 * t166 - g2_vx_leg2 * t168;
-        let t171 = rate_2_leg2 * rate_2_leg2;
-        let t174 = acceleration[0] - t31 + t33;
-        let t177 = acceleration[1] - t10 - t15;
-        let rate_dot_1_leg2 = t52 * (t164 * t171 - (t50 * t174 + t61 * t177));
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t166 + minus_g1_vy_leg2 * t168;
-        let g2_wz_leg2 = 0.11764705882352941 * (t8 * t51 - t12 * t51);
-        let t194 = g2_vx_leg2 * t96 - g2_vx_leg2 * t101 + g2_wz_leg2 * t91;
-        let t196 = t174 - t177;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t51
-            * (0.7071067811865476 * t196 - t171 * (0.34 * c2_leg2));
-        let t207 = g2_vx_leg2 * t111 - g2_vx_leg2 * t109 + g2_wz_leg2 * t114;
-        let t213 = g2_vx_leg2 * t126 + g2_vx_leg2 * t121 - g2_wz_leg2 * t132;
-        let t215 = c2_leg2 * rate_dot_1_leg2;
-        let t223 = s2_leg2 * rate_dot_1_leg2;
-        let t233 = twist[2] - rate_2_leg2;
-        let t240 = acceleration[1] - t31 + t33;
-        let t243 = acceleration[0] + t10 + t15;
-        let g2_vx_leg3 = 2.079725827019258 * t57;
-        let t247 = twist[0] + t19;
-        let t249 = twist[1] - t14;
-        let rate_2_leg3 = g2_vx_leg3 * t247 + g2_vx_leg3 * t249;
-        let t252 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t58 * (t56 * t240 - t63 * t243 - t164 * t252);
-        let rate_1_leg3 = g1_vx_leg3 * t247 - minus_g1_vy_leg3 * t249;
-        let g2_wz_leg3 = 0.11764705882352941 * (t8 * t57 - t12 * t57);
-        let t268 = g2_vx_leg3 * t96 + g2_vx_leg3 * t101 + g2_wz_leg3 * t91;
-        let t272 = t243 + t240;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t57
-            * (t252 * (0.34 * c2_leg3) - 0.7071067811865476 * t272);
-        let t281 = g2_wz_leg3 * t114 - (g2_vx_leg3 * t109 + g2_vx_leg3 * t111);
-        let t287 = g2_vx_leg3 * t126 - g2_vx_leg3 * t121 - g2_wz_leg3 * t132;
+        let t20 = twist[2] * t19;
+        let t21 = acceleration[1] + t17 + t20;
+        let t23 = acceleration[0] + t10 - t15;
+        let t24 = t21 - t23;
+        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
+        let t28 = twist[0] - t14;
+        let t30 = twist[1] + t19;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t28 + minus_g2_vx_leg1 * t30;
+        let t33 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t35 = t16 - t24 + 0.2404163056034262 * t2 * t33;
+        let t37 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t37 * t4;
+        let t40 = acceleration[0] + t17 + t20;
+        let t41 = t40 + t16;
+        let t42 = t41 - t21;
+        let t44 = acceleration[1] - t17 - t20;
+        let t45 = t42 - t44;
+        let t49 = t40 - t45 + 0.2404163056034262 * t37 * t33;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t35 + g1_vy_leg1 * t49;
+        let rate_1_leg1 = g1_vx_leg1 * t28 + g1_vy_leg1 * t30;
+        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t12 - t3 * t8);
+        let t62 = c2_leg2 + s2_leg2;
+        let t63 = 1.0 / s2_leg2;
+        let t64 = 0.7071067811865476 * t63;
+        let minus_g1_vx_leg2 = t62 * t64;
+        let t68 = s2_leg3 + c2_leg3;
+        let t69 = 1.0 / s2_leg3;
+        let t70 = 0.7071067811865476 * t69;
+        let minus_g1_vy_leg3 = t68 * t70;
+        let t73 = s2_leg2 - c2_leg2;
+        let minus_g1_vy_leg2 = t73 * t64;
+        let t75 = s2_leg3 - c2_leg3;
+        let g1_vx_leg3 = t75 * t70;
+        let g1_wz_leg1 = g1_vy_leg1 * t9 - g1_vx_leg1 * t13;
+        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 + t13 * g1_vx_leg3;
+        let t87 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t91 = g1_wz_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_wz_leg3;
+        let g1_wz_leg2 = t13 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
+        let t99 = g1_vy_leg1 * g1_vx_leg3 + g1_vx_leg1 * minus_g1_vy_leg3;
+        let t101 = minus_g1_vx_leg2 * t87 + minus_g1_vy_leg2 * t91 + g1_wz_leg2 * t99;
+        ::overact::guard::platform(t101, 0.2752380952380029, "kept actuators")?;
+        ::overact::guard::platform(t101, 0.2752380952380029, "kept actuators")?;
+        ::overact::guard::platform(t101, 0.2752380952380029, "kept actuators")?;
+        let t102 = 1.0 / t101;
+        let t103 = (minus_g1_vx_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * g1_vx_leg3)
+            * t102;
+        let t108 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t102;
+        let t113 = (minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t102;
+        let t116 = g2_wz_leg1 * t103
+            - (minus_g2_vx_leg1 * t108 + minus_g2_vx_leg1 * t113);
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t35 + minus_g2_vx_leg1 * t49;
+        let t121 = t87 * t102;
+        let t123 = t91 * t102;
+        let t126 = t99 * t102;
+        let t128 = minus_g2_vx_leg1 * t121 + minus_g2_vx_leg1 * t123 + g2_wz_leg1 * t126;
+        let t133 = (g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t102;
+        let t138 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t102;
+        let t144 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2)
+            * t102;
+        let t146 = minus_g2_vx_leg1 * t133 - minus_g2_vx_leg1 * t138 - g2_wz_leg1 * t144;
+        let t148 = c2_leg1 * rate_dot_1_leg1;
+        let t159 = s2_leg1 * rate_dot_1_leg1;
+        let t168 = minus_rate_2_leg1 + twist[2];
+        let t174 = 0.2404163056034262 + 0.2404163056034262;
+        let g2_vx_leg2 = 2.079725827019258 * t63;
+        let t176 = twist[0] - t19;
+        let t178 = twist[1] - t14;
+        let rate_2_leg2 = g2_vx_leg2 * t176 - g2_vx_leg2 * t178;
+        let t181 = rate_2_leg2 * rate_2_leg2;
+        let rate_dot_1_leg2 = t64 * (t174 * t181 - (t62 * t42 + t73 * t44));
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t178;
+        let g2_wz_leg2 = 0.11764705882352941 * (t12 * t63 - t8 * t63);
+        let t200 = g2_vx_leg2 * t108 - g2_vx_leg2 * t113 + g2_wz_leg2 * t103;
+        let rate_dot_2_leg2 = 2.9411764705882355 * t63
+            * (0.7071067811865476 * t45 - t181 * (0.34 * c2_leg2));
+        let t212 = g2_vx_leg2 * t123 - g2_vx_leg2 * t121 + g2_wz_leg2 * t126;
+        let t218 = g2_vx_leg2 * t138 + g2_vx_leg2 * t133 - g2_wz_leg2 * t144;
+        let t220 = c2_leg2 * rate_dot_1_leg2;
+        let t228 = s2_leg2 * rate_dot_1_leg2;
+        let t238 = twist[2] - rate_2_leg2;
+        let g2_vx_leg3 = 2.079725827019258 * t69;
+        let t248 = twist[0] + t14;
+        let t250 = twist[1] - t19;
+        let rate_2_leg3 = g2_vx_leg3 * t248 + g2_vx_leg3 * t250;
+        let t253 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t70 * (t68 * t16 - t75 * t40 - t174 * t253);
+        let rate_1_leg3 = g1_vx_leg3 * t248 - minus_g1_vy_leg3 * t250;
+        let g2_wz_leg3 = 0.11764705882352941 * (t12 * t69 - t8 * t69);
+        let t269 = g2_vx_leg3 * t108 + g2_vx_leg3 * t113 + g2_wz_leg3 * t103;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t69
+            * (t253 * (0.34 * c2_leg3) - 0.7071067811865476 * t41);
+        let t281 = g2_wz_leg3 * t126 - (g2_vx_leg3 * t121 + g2_vx_leg3 * t123);
+        let t287 = g2_vx_leg3 * t138 - g2_vx_leg3 * t133 - g2_wz_leg3 * t144;
         let t289 = c2_leg3 * minus_rate_dot_1_leg3;
         let t297 = s2_leg3 * minus_rate_dot_1_leg3;
         let t307 = twist[2] - rate_2_leg3;
@@ -2509,98 +2499,95 @@ impl Planar4Prr {
         let g1_vx_leg4 = t315 * t317;
         let t320 = c2_leg4 - s2_leg4;
         let minus_g1_vy_leg4 = t320 * t317;
-        let g1_wz_leg4 = t13 * g1_vx_leg4 - t9 * minus_g1_vy_leg4;
-        let t328 = g1_vx_leg4 * t96 - minus_g1_vy_leg4 * t101 + g1_wz_leg4 * t91;
-        let t330 = acceleration[0] + t31 - t33;
-        let t333 = acceleration[1] + t10 + t15;
+        let g1_wz_leg4 = t9 * g1_vx_leg4 - t13 * minus_g1_vy_leg4;
+        let t328 = g1_vx_leg4 * t108 - minus_g1_vy_leg4 * t113 + g1_wz_leg4 * t103;
         let minus_g2_vx_leg4 = 2.079725827019258 * t316;
-        let t337 = twist[1] + t19;
-        let t339 = twist[0] + t14;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t337 - minus_g2_vx_leg4 * t339;
-        let t342 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = t317 * (t315 * t330 - t320 * t333 + t164 * t342);
-        let t346 = t328 * rate_dot_1_leg4;
-        let t351 = minus_g1_vy_leg4 * t111 - g1_vx_leg4 * t109 + g1_wz_leg4 * t114;
-        let t352 = t351 * rate_dot_1_leg4;
-        let t357 = g1_vx_leg4 * t126 + minus_g1_vy_leg4 * t121 - g1_wz_leg4 * t132;
-        let t358 = t357 * rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vx_leg4 * t339 - minus_g1_vy_leg4 * t337;
-        let g2_wz_leg4 = 0.11764705882352941 * (t8 * t316 - t12 * t316);
-        let t376 = minus_g2_vx_leg4 * t101 - minus_g2_vx_leg4 * t96 + g2_wz_leg4 * t91;
-        let t378 = t333 - t330;
+        let t333 = twist[1] + t14;
+        let t335 = twist[0] + t19;
+        let rate_2_leg4 = minus_g2_vx_leg4 * t333 - minus_g2_vx_leg4 * t335;
+        let t338 = rate_2_leg4 * rate_2_leg4;
+        let rate_dot_1_leg4 = t317 * (t315 * t23 - t320 * t21 + t174 * t338);
+        let t342 = t328 * rate_dot_1_leg4;
+        let t347 = minus_g1_vy_leg4 * t123 - g1_vx_leg4 * t121 + g1_wz_leg4 * t126;
+        let t348 = t347 * rate_dot_1_leg4;
+        let t353 = g1_vx_leg4 * t138 + minus_g1_vy_leg4 * t133 - g1_wz_leg4 * t144;
+        let t354 = t353 * rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * t335 - minus_g1_vy_leg4 * t333;
+        let g2_wz_leg4 = 0.11764705882352941 * (t12 * t316 - t8 * t316);
+        let t372 = minus_g2_vx_leg4 * t113 - minus_g2_vx_leg4 * t108 + g2_wz_leg4 * t103;
         let rate_dot_2_leg4 = 2.9411764705882355 * t316
-            * (0.7071067811865476 * t378 - t342 * (0.34 * c2_leg4));
-        let t389 = minus_g2_vx_leg4 * t109 - minus_g2_vx_leg4 * t111 + g2_wz_leg4 * t114;
-        let t395 = minus_g2_vx_leg4 * t126 + minus_g2_vx_leg4 * t121 + g2_wz_leg4 * t132;
-        let t399 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t342;
-        let t401 = c2_leg4 * rate_dot_1_leg4;
-        let t410 = 2.079725827019258 * t378;
-        let t412 = s2_leg4 * rate_dot_1_leg4;
-        let t425 = twist[2] - rate_2_leg4;
-        let t435 = twist[2] * twist[2];
-        let t437 = c_phi * acceleration[2] - s_phi * t435;
-        let t441 = c_phi * t435 + s_phi * acceleration[2];
-        let t446 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t464 = c_phi * acceleration[0] + s_phi * acceleration[1];
+            * (0.7071067811865476 * t24 - t338 * (0.34 * c2_leg4));
+        let t384 = minus_g2_vx_leg4 * t121 - minus_g2_vx_leg4 * t123 + g2_wz_leg4 * t126;
+        let t390 = minus_g2_vx_leg4 * t138 + minus_g2_vx_leg4 * t133 + g2_wz_leg4 * t144;
+        let t394 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t338;
+        let t396 = c2_leg4 * rate_dot_1_leg4;
+        let t405 = 2.079725827019258 * t24;
+        let t407 = s2_leg4 * rate_dot_1_leg4;
+        let t420 = twist[2] - rate_2_leg4;
+        let t431 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t433 = twist[2] * twist[2];
+        let t436 = c_phi * t433 + s_phi * acceleration[2];
+        let t440 = s_phi * t433 - c_phi * acceleration[2];
+        let t459 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -(t104 * minus_rate_dot_2_leg1),
-                t104 * t136 - (s2_leg1 * t25 + c2_leg1 * minus_rate_dot_2_leg1),
-                s2_leg1 * minus_rate_dot_2_leg1 - c2_leg1 * t25 - t104 * t147, rate_dot_1_leg1,
-                -::overact::math::signed(t104, minus_rate_2_leg1),
-                ::overact::math::signed(t91 - t104, t156), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t194 * rate_dot_2_leg2, t194 * t215, -(t194 * t223), 0.0,
-                ::overact::math::signed(t194, rate_2_leg2),
-                ::overact::math::signed(t91 - t194, t233), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t268 * minus_rate_dot_2_leg3), -(t268 * t289), t268 * t297, 0.0,
-                ::overact::math::signed(t268, rate_2_leg3),
-                ::overact::math::signed(t91 - t268, t307), t346, t346, t328 * rate_1_leg4,
-                ::overact::math::signed(t328, rate_1_leg4), t328, t376 * rate_dot_2_leg4,
-                t328 * t399 + t376 * t401, -(t328 * t410 + t376 * t412), t346,
-                ::overact::math::signed(t376, rate_2_leg4),
-                ::overact::math::signed(t91 - t376, t425), t91 * acceleration[2],
-                t101 * t437 - t96 * t441 + t91 * t446, -(t96 * t437 + t101 * t441 + t91 * t464),
-                t96 * acceleration[0] + t101 * acceleration[1],
+                1.0, -(t116 * minus_rate_dot_2_leg1),
+                t116 * t148 - (s2_leg1 * t33 + c2_leg1 * minus_rate_dot_2_leg1),
+                s2_leg1 * minus_rate_dot_2_leg1 - c2_leg1 * t33 - t116 * t159, rate_dot_1_leg1,
+                -::overact::math::signed(t116, minus_rate_2_leg1),
+                ::overact::math::signed(t103 - t116, t168), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t200 * rate_dot_2_leg2, t200 * t220, -(t200 * t228), 0.0,
+                ::overact::math::signed(t200, rate_2_leg2),
+                ::overact::math::signed(t103 - t200, t238), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t269 * minus_rate_dot_2_leg3), -(t269 * t289), t269 * t297, 0.0,
+                ::overact::math::signed(t269, rate_2_leg3),
+                ::overact::math::signed(t103 - t269, t307), t342, t342, t328 * rate_1_leg4,
+                ::overact::math::signed(t328, rate_1_leg4), t328, t372 * rate_dot_2_leg4,
+                t328 * t394 + t372 * t396, -(t328 * t405 + t372 * t407), t342,
+                ::overact::math::signed(t372, rate_2_leg4),
+                ::overact::math::signed(t103 - t372, t420), t103 * acceleration[2],
+                t103 * t431 - (t108 * t436 + t113 * t440), t108 * t440 - t113 * t436 - t103 * t459,
+                t108 * acceleration[0] + t113 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t116 * minus_rate_dot_2_leg1), t116 * t136,
-                -(t116 * t147), 0.0, -::overact::math::signed(t116, minus_rate_2_leg1),
-                ::overact::math::signed(t114 - t116, t156), rate_dot_1_leg2, rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t128 * minus_rate_dot_2_leg1), t128 * t148,
+                -(t128 * t159), 0.0, -::overact::math::signed(t128, minus_rate_2_leg1),
+                ::overact::math::signed(t126 - t128, t168), rate_dot_1_leg2, rate_dot_1_leg2,
                 -minus_rate_1_leg2, -::overact::math::sign(minus_rate_1_leg2), 1.0,
-                t207 * rate_dot_2_leg2, c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t171 + t207 * t215,
-                -(2.079725827019258 * t196 + t207 * t223), rate_dot_1_leg2,
-                ::overact::math::signed(t207, rate_2_leg2),
-                ::overact::math::signed(t114 - t207, t233), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t212 * rate_dot_2_leg2, c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t181 + t212 * t220,
+                -(2.079725827019258 * t45 + t212 * t228), rate_dot_1_leg2,
+                ::overact::math::signed(t212, rate_2_leg2),
+                ::overact::math::signed(t126 - t212, t238), 0.0, 0.0, 0.0, 0.0, 0.0,
                 -(t281 * minus_rate_dot_2_leg3), -(t281 * t289), t281 * t297, 0.0,
                 ::overact::math::signed(t281, rate_2_leg3),
-                ::overact::math::signed(t114 - t281, t307), t352, t352, t351 * rate_1_leg4,
-                ::overact::math::signed(t351, rate_1_leg4), t351, t389 * rate_dot_2_leg4,
-                t351 * t399 + t389 * t401, -(t351 * t410 + t389 * t412), t352,
-                ::overact::math::signed(t389, rate_2_leg4),
-                ::overact::math::signed(t114 - t389, t425), t114 * acceleration[2],
-                t109 * t441 - t111 * t437 + t114 * t446, t109 * t437 + t111 * t441 - t114 * t464,
-                -(t109 * acceleration[0] + t111 * acceleration[1]),
+                ::overact::math::signed(t126 - t281, t307), t348, t348, t347 * rate_1_leg4,
+                ::overact::math::signed(t347, rate_1_leg4), t347, t384 * rate_dot_2_leg4,
+                t347 * t394 + t384 * t396, -(t347 * t405 + t384 * t407), t348,
+                ::overact::math::signed(t384, rate_2_leg4),
+                ::overact::math::signed(t126 - t384, t420), t126 * acceleration[2],
+                t121 * t436 + t123 * t440 + t126 * t431, t123 * t436 - t121 * t440 - t126 * t459,
+                -(t121 * acceleration[0] + t123 * acceleration[1]),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t134 * minus_rate_dot_2_leg1), t134 * t136,
-                -(t134 * t147), 0.0, -::overact::math::signed(t134, minus_rate_2_leg1),
-                -::overact::math::signed(t134 + t132, t156), 0.0, 0.0, 0.0, 0.0, 0.0,
-                t213 * rate_dot_2_leg2, t213 * t215, -(t213 * t223), 0.0,
-                ::overact::math::signed(t213, rate_2_leg2),
-                -::overact::math::signed(t213 + t132, t233), -minus_rate_dot_1_leg3,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t146 * minus_rate_dot_2_leg1), t146 * t148,
+                -(t146 * t159), 0.0, -::overact::math::signed(t146, minus_rate_2_leg1),
+                -::overact::math::signed(t146 + t144, t168), 0.0, 0.0, 0.0, 0.0, 0.0,
+                t218 * rate_dot_2_leg2, t218 * t220, -(t218 * t228), 0.0,
+                ::overact::math::signed(t218, rate_2_leg2),
+                -::overact::math::signed(t218 + t144, t238), -minus_rate_dot_1_leg3,
                 -minus_rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3), 1.0,
                 -(t287 * minus_rate_dot_2_leg3),
-                -(s2_leg3 * t252 + c2_leg3 * minus_rate_dot_2_leg3 + t287 * t289),
-                t287 * t297 - 2.079725827019258 * t272, -minus_rate_dot_1_leg3,
+                -(s2_leg3 * t253 + c2_leg3 * minus_rate_dot_2_leg3 + t287 * t289),
+                t287 * t297 - 2.079725827019258 * t41, -minus_rate_dot_1_leg3,
                 ::overact::math::signed(t287, rate_2_leg3),
-                -::overact::math::signed(t287 + t132, t307), t358, t358, t357 * rate_1_leg4,
-                ::overact::math::signed(t357, rate_1_leg4), t357, -(t395 * rate_dot_2_leg4),
-                t357 * t399 - t395 * t401, t395 * t412 - t357 * t410, t358,
-                -::overact::math::signed(t395, rate_2_leg4),
-                ::overact::math::signed(t395 - t132, t425), -(t132 * acceleration[2]),
-                -(t126 * t441 + t121 * t437 + t132 * t446), t121 * t441 - t126 * t437 + t132 * t464,
-                t126 * acceleration[0] - t121 * acceleration[1],
+                -::overact::math::signed(t287 + t144, t307), t354, t354, t353 * rate_1_leg4,
+                ::overact::math::signed(t353, rate_1_leg4), t353, -(t390 * rate_dot_2_leg4),
+                t353 * t394 - t390 * t396, t390 * t407 - t353 * t405, t354,
+                -::overact::math::signed(t390, rate_2_leg4),
+                ::overact::math::signed(t390 - t144, t420), -(t144 * acceleration[2]),
+                t133 * t440 - t138 * t436 - t144 * t431, t138 * t440 + t133 * t436 + t144 * t459,
+                t138 * acceleration[0] - t133 * acceleration[1],
             ],
         ])
     }
@@ -2615,7 +2602,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 654 operations (258 additions, 388 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 597 intermediates.
+    /// 643 operations (251 additions, 384 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 586 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2627,333 +2614,333 @@ impl Planar4Prr {
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 1.0 / minus_s2_leg1;
-        let t21 = 0.7071067811865476 * minus_s2_leg1;
-        let t22 = t9 + t5;
-        let t23 = 1.4705882352941178 * t22;
-        let t24 = t21 - t23;
-        let g1_vy_leg1 = t24 * t20;
-        let t28 = pose[0] - t3 + 0.21213203435596426;
-        let t30 = pose[1] + t7 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t32 = 1.0 / minus_s2_leg1;
+        let t33 = 0.7071067811865476 * minus_s2_leg1;
+        let t34 = t21 + t19;
+        let t35 = 1.4705882352941178 * t34;
+        let t36 = t33 - t35;
+        let t37 = t35 + t33;
+        let minus_g1_vx_leg1 = t37 * t32;
+        let g1_vy_leg1 = t36 * t32;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let t51 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t51, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t42 = t30 - t28;
-        let t43 = 1.4705882352941178 * t42;
-        let t44 = t41 + t43;
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t44 * t45;
-        let t50 = pose[0] - t7 + 0.21213203435596426;
-        let t52 = pose[1] - t3 + 0.21213203435596426;
-        let t53 = t50 - t52;
-        let t61 = 8.650519031141869
-            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
-        ::overact::guard::reach(t61, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        let t53 = 0.7071067811865476 * minus_s2_leg2;
+        let t54 = 1.4705882352941178 * t18;
+        let t55 = t53 - t54;
+        let t56 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t55 * t56;
+        let t58 = t53 + t54;
+        let minus_g1_vy_leg2 = t58 * t56;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t65 = 1.4705882352941178 * t14;
+        let t73 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t73, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t73);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t63 = 0.7071067811865476 * minus_s2_leg3;
-        let t64 = t50 + t52;
-        let t65 = 1.4705882352941178 * t64;
-        let t66 = t63 + t65;
-        let t67 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t66 * t67;
-        let t72 = pose[0] + t3 - 0.21213203435596426;
-        let t74 = pose[1] - t7 + 0.21213203435596426;
-        let t75 = t72 + t74;
-        let t83 = 8.650519031141869
-            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t83, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t83);
-        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t85 = 0.7071067811865476 * minus_s2_leg4;
-        let t86 = t72 - t74;
+        let t75 = 0.7071067811865476 * minus_s2_leg3;
+        let t76 = t65 - t75;
+        let t77 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t76 * t77;
+        let t79 = t75 + t65;
+        let minus_g1_vy_leg3 = t79 * t77;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let t86 = t12 - t16;
         let t87 = 1.4705882352941178 * t86;
-        let t88 = t85 + t87;
-        let t89 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t88 * t89;
-        let t93 = t41 - t43;
-        let minus_g1_vx_leg2 = t93 * t45;
-        let t96 = t23 + t21;
-        let minus_g1_vx_leg1 = t96 * t20;
-        let t100 = t65 - t63;
-        let minus_g1_vx_leg3 = t100 * t67;
-        let t104 = t87 - t85;
-        let minus_g1_vx_leg4 = t104 * t89;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
-            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t88 = t12 + t16;
+        let t96 = 8.650519031141869
+            * (0.5 * (t88 * t88) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t96, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t96);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t98 = 0.7071067811865476 * minus_s2_leg4;
+        let t99 = t87 - t98;
+        let t100 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t99 * t100;
+        let t102 = t98 + t87;
+        let g1_vy_leg4 = t102 * t100;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t108 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t115 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t115, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t115, 3.440476190476192, "actuators")?;
+        let t116 = 1.0 / t115;
+        let t117 = t108 * t116;
+        let t140 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t142 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t140 * t117;
+        let t150 = t140 * t116;
+        let t152 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t145 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
-            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t146 = t145 * t115;
-        let t157 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t146;
-        let t158 = t157 * t119;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t145 * t146
-            - t157 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+            - t140 * t150;
+        ::overact::guard::platform(t152, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t152, 3.440476190476192, "actuators")?;
+        let t153 = 1.0 / t152;
+        let t154 = t142 * t153;
+        let t156 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t108 * t117
+            - t142 * t154;
+        ::overact::guard::platform(t156, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t156, 0.02560000000000001, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t171 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t186 = g1_vy_leg1 * actuator_velocities[0]
+        let t182 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t175 * t116;
-        let t188 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t171 * t150;
+        let t184 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t175 * t146 - t158 * t186;
-        let rate_3_leg1 = t161 * t188;
-        let t190 = t7 * rate_3_leg1;
-        let t191 = rate_3_leg1 * t190;
-        let t193 = t3 * rate_3_leg1;
-        let t194 = rate_3_leg1 * t193;
-        let g2_vx_leg1 = 2.079725827019258 * t20;
-        let t202 = t119 * t186 - t158 * rate_3_leg1;
-        let t205 = t146 * rate_3_leg1 - (t175 * t115 + t116 * t202);
-        let t206 = t205 - t193;
-        let t208 = t202 + t190;
-        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
-        let t211 = rate_2_leg1 * rate_2_leg1;
-        let t212 = 0.34 * t211;
-        let rate_dot_1_leg1 = t20 * (t96 * t191 - t24 * t194 - t212);
-        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
-        let t221 = t202 - t193;
-        let t223 = t205 - t190;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
-        let t226 = rate_2_leg2 * rate_2_leg2;
-        let t227 = 0.34 * t226;
-        let minus_rate_dot_1_leg2 = t45 * (t93 * t194 - t44 * t191 + t227);
-        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t67;
-        let t237 = t205 + t193;
-        let t239 = t202 - t190;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t243 = 0.34 * t242;
-        let minus_rate_dot_1_leg3 = t67 * (t100 * t191 + t66 * t194 + t243);
-        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t89;
-        let t250 = t205 + t190;
-        let t252 = t202 + t193;
-        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
-        let t255 = rate_2_leg4 * rate_2_leg4;
-        let t256 = 0.34 * t255;
-        let minus_rate_dot_1_leg4 = t89 * (t256 - (t104 * t194 + t88 * t191));
-        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
-            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
-        let t273 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
-            + g1_vy_leg4 * t262 + t116 * t271;
-        let t285 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
-            + g1_wz_leg4 * t262 - t146 * t271 - t158 * t273;
-        let rate_dot_3_leg1 = t161 * t285;
-        let t288 = t119 * t273 - t158 * rate_dot_3_leg1;
-        let t289 = t7 * rate_dot_3_leg1;
-        let t291 = t288 + t289 - t194;
-        let t297 = t146 * rate_dot_3_leg1 - (t115 * t271 + t116 * t288);
-        let t298 = t3 * rate_dot_3_leg1;
-        let t300 = t297 - t298 - t191;
-        let t303 = t24 * t291 - t96 * t300 - t212;
-        let rate_dot_1_leg1_2 = t20 * t303;
-        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
-        let t314 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t318 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
-        let t323 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t325 = minus_g1_vx_leg2 * t314 + minus_g1_vy_leg2 * t318 - g1_wz_leg2 * t323;
-        ::overact::guard::platform(t325, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t325, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t325, 0.2752380952380954, "kept actuators")?;
-        let t326 = 1.0 / t325;
-        let t327 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
-            * t326;
-        let t332 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
-            * t326;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
-        let t342 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
-            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t326;
-        let t344 = g2_vx_leg1 * t327 - g2_vx_leg1 * t332 + g2_wz_leg1 * t342;
-        let t346 = t300 + t291;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t20
-            * (0.7071067811865476 * t346 + 0.7071067811865476 * t22 * t211);
-        let t353 = t314 * t326;
-        let t355 = t318 * t326;
-        let t358 = t323 * t326;
-        let t360 = g2_vx_leg1 * t353 + g2_vx_leg1 * t355 + g2_wz_leg1 * t358;
-        let t365 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t326;
-        let t370 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
-            * t326;
-        let t376 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
-            * t326;
-        let t378 = g2_vx_leg1 * t365 + g2_vx_leg1 * t370 + g2_wz_leg1 * t376;
-        let c2_leg1 = 2.079725827019258 * t22;
-        let t384 = c2_leg1 * rate_dot_1_leg1_2;
-        let t398 = rate_3_leg1 - rate_2_leg1;
-        let t405 = t297 - t289 + t194;
-        let t408 = t288 - t298 - t191;
-        let t411 = t93 * t405 + t44 * t408 + t227;
-        let minus_rate_dot_1_leg2_2 = t45 * t411;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
-        let t425 = g2_wz_leg2 * t342
-            - (minus_g2_vx_leg2 * t327 + minus_g2_vx_leg2 * t332);
-        let t427 = t405 - t408;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
-            * (0.7071067811865476 * t427 - 0.7071067811865476 * t42 * t226);
-        let t438 = minus_g2_vx_leg2 * t353 - minus_g2_vx_leg2 * t355 - g2_wz_leg2 * t358;
-        let t444 = minus_g2_vx_leg2 * t370 - minus_g2_vx_leg2 * t365 + g2_wz_leg2 * t376;
-        let c2_leg2 = 2.079725827019258 * t42;
-        let t447 = c2_leg2 * minus_rate_dot_1_leg2_2;
-        let t464 = rate_3_leg1 - rate_2_leg2;
-        let t471 = t297 + t298 + t191;
-        let t474 = t288 - t289 + t194;
-        let t477 = t100 * t471 + t66 * t474 + t243;
-        let minus_rate_dot_1_leg3_2 = t67 * t477;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
-        let t491 = minus_g2_vx_leg3 * t332 - minus_g2_vx_leg3 * t327 + g2_wz_leg3 * t342;
-        let t493 = t471 + t474;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
-            * (0.7071067811865476 * t493 + 0.7071067811865476 * t64 * t242);
-        let t504 = minus_g2_vx_leg3 * t353 + minus_g2_vx_leg3 * t355 - g2_wz_leg3 * t358;
-        let t510 = g2_wz_leg3 * t376
-            - (minus_g2_vx_leg3 * t365 + minus_g2_vx_leg3 * t370);
-        let minus_c2_leg3 = 2.079725827019258 * t64;
-        let t513 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t530 = minus_rate_2_leg3 + rate_3_leg1;
-        let t540 = g1_wz_leg4 * t342 - (minus_g1_vx_leg4 * t327 + g1_vy_leg4 * t332);
-        let t542 = t297 + t289 - t194;
-        let t545 = t288 + t298 + t191;
-        let t548 = t104 * t542 - t88 * t545 + t256;
-        let minus_rate_dot_1_leg4_2 = t89 * t548;
-        let t550 = t540 * minus_rate_dot_1_leg4_2;
-        let t555 = minus_g1_vx_leg4 * t353 - g1_vy_leg4 * t355 - g1_wz_leg4 * t358;
-        let t556 = t555 * minus_rate_dot_1_leg4_2;
-        let t561 = g1_vy_leg4 * t370 - minus_g1_vx_leg4 * t365 + g1_wz_leg4 * t376;
-        let t562 = t561 * minus_rate_dot_1_leg4_2;
-        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
-        let t580 = g2_vx_leg4 * t327 + g2_vx_leg4 * t332 + g2_wz_leg4 * t342;
-        let t582 = t545 - t542;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
-            * (0.7071067811865476 * t582 - 0.7071067811865476 * t86 * t255);
-        let t593 = g2_vx_leg4 * t355 - g2_vx_leg4 * t353 - g2_wz_leg4 * t358;
-        let t599 = g2_vx_leg4 * t365 - g2_vx_leg4 * t370 + g2_wz_leg4 * t376;
+            + g1_wz_leg4 * actuator_velocities[3] - t171 * t117 - t154 * t182;
+        let rate_3_leg1 = t157 * t184;
+        let t186 = t3 * rate_3_leg1;
+        let t187 = rate_3_leg1 * t186;
+        let t189 = t7 * rate_3_leg1;
+        let t190 = rate_3_leg1 * t189;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let t198 = t153 * t182 - t154 * rate_3_leg1;
+        let t201 = t117 * rate_3_leg1 - (t171 * t116 + t150 * t198);
+        let t202 = t201 - t189;
+        let t204 = t198 + t186;
+        let rate_2_leg1 = g2_vx_leg1 * t202 + g2_vx_leg1 * t204;
+        let t207 = rate_2_leg1 * rate_2_leg1;
+        let t208 = 0.34 * t207;
+        let rate_dot_1_leg1 = t32 * (t37 * t187 - t36 * t190 - t208);
+        let t211 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t56;
+        let t217 = t198 - t189;
+        let t219 = t201 - t186;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t217 - minus_g2_vx_leg2 * t219;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.34 * t222;
+        let minus_rate_dot_1_leg2 = t56 * (t55 * t190 - t58 * t187 + t223);
+        let t226 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t77;
+        let t233 = t201 + t189;
+        let t235 = t198 - t186;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t233 + minus_g2_vx_leg3 * t235;
+        let t238 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t239 = 0.34 * t238;
+        let minus_rate_dot_1_leg3 = t77 * (t76 * t187 + t79 * t190 + t239);
+        let t242 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t100;
+        let t246 = t201 + t186;
+        let t248 = t198 + t189;
+        let rate_2_leg4 = g2_vx_leg4 * t246 - g2_vx_leg4 * t248;
+        let t251 = rate_2_leg4 * rate_2_leg4;
+        let t252 = 0.34 * t251;
+        let minus_rate_dot_1_leg4 = t100 * (t252 - (t99 * t190 + t102 * t187));
+        let t258 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t267 = minus_g1_vx_leg1 * t211 + minus_g1_vx_leg2 * t226
+            + minus_g1_vx_leg3 * t242 + minus_g1_vx_leg4 * t258;
+        let t278 = g1_vy_leg1 * t211 - minus_g1_vy_leg2 * t226 - minus_g1_vy_leg3 * t242
+            + g1_vy_leg4 * t258 + t150 * t267;
+        let t280 = g1_wz_leg1 * t211 + g1_wz_leg2 * t226 + g1_wz_leg3 * t242
+            + g1_wz_leg4 * t258 - t117 * t267 - t154 * t278;
+        let rate_dot_3_leg1 = t157 * t280;
+        let t286 = t153 * t278 - t154 * rate_dot_3_leg1;
+        let t289 = t117 * rate_dot_3_leg1 - (t116 * t267 + t150 * t286);
+        let t290 = t7 * rate_dot_3_leg1;
+        let t292 = t289 + t290 + t187;
+        let t293 = t3 * rate_dot_3_leg1;
+        let t295 = t286 - t293 + t190;
+        let t296 = t292 + t295;
+        let t298 = t286 + t290 + t187;
+        let t299 = t296 - t298;
+        let t301 = t286 - t290 - t187;
+        let t302 = t299 - t301;
+        let t303 = t292 - t302;
+        let t306 = t289 + t293 - t190;
+        let t307 = t298 - t306;
+        let t308 = t295 - t307;
+        let t311 = t36 * t303 - t37 * t308 - t208;
+        let rate_dot_1_leg1_2 = t32 * t311;
+        let rate_1_leg1 = g1_vy_leg1 * t204 - minus_g1_vx_leg1 * t202;
+        let t322 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t326 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let t331 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t333 = minus_g1_vx_leg2 * t322 + minus_g1_vy_leg2 * t326 - g1_wz_leg2 * t331;
+        ::overact::guard::platform(t333, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t333, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t333, 0.2752380952380954, "kept actuators")?;
+        let t334 = 1.0 / t333;
+        let t335 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t334;
+        let t340 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t334;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t32 - t6 * t32);
+        let t350 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t334;
+        let t352 = g2_vx_leg1 * t335 - g2_vx_leg1 * t340 + g2_wz_leg1 * t350;
+        let t354 = t308 + t303;
+        let c2_leg1 = 2.079725827019258 * t34;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t32
+            * (0.7071067811865476 * t354 + t208 * c2_leg1);
+        let t361 = t322 * t334;
+        let t363 = t326 * t334;
+        let t366 = t331 * t334;
+        let t368 = g2_vx_leg1 * t361 + g2_vx_leg1 * t363 + g2_wz_leg1 * t366;
+        let t373 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t334;
+        let t378 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t334;
+        let t384 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t334;
+        let t386 = g2_vx_leg1 * t373 + g2_vx_leg1 * t378 + g2_wz_leg1 * t384;
+        let t391 = c2_leg1 * rate_dot_1_leg1_2;
+        let t405 = rate_3_leg1 - rate_2_leg1;
+        let t414 = t55 * t299 + t58 * t301 + t223;
+        let minus_rate_dot_1_leg2_2 = t56 * t414;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t219 + minus_g1_vy_leg2 * t217;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t56 - t6 * t56);
+        let t428 = g2_wz_leg2 * t350
+            - (minus_g2_vx_leg2 * t335 + minus_g2_vx_leg2 * t340);
+        let c2_leg2 = 2.079725827019258 * t18;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t56
+            * (0.7071067811865476 * t302 - t223 * c2_leg2);
+        let t440 = minus_g2_vx_leg2 * t361 - minus_g2_vx_leg2 * t363 - g2_wz_leg2 * t366;
+        let t446 = minus_g2_vx_leg2 * t378 - minus_g2_vx_leg2 * t373 + g2_wz_leg2 * t384;
+        let t448 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t465 = rate_3_leg1 - rate_2_leg2;
+        let t474 = t76 * t292 + t79 * t295 + t239;
+        let minus_rate_dot_1_leg3_2 = t77 * t474;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t233 + minus_g1_vy_leg3 * t235;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t77 - t6 * t77);
+        let t488 = minus_g2_vx_leg3 * t340 - minus_g2_vx_leg3 * t335 + g2_wz_leg3 * t350;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t77
+            * (0.7071067811865476 * t296 + t239 * minus_c2_leg3);
+        let t500 = minus_g2_vx_leg3 * t361 + minus_g2_vx_leg3 * t363 - g2_wz_leg3 * t366;
+        let t506 = g2_wz_leg3 * t384
+            - (minus_g2_vx_leg3 * t373 + minus_g2_vx_leg3 * t378);
+        let t508 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t525 = minus_rate_2_leg3 + rate_3_leg1;
+        let t535 = g1_wz_leg4 * t350 - (minus_g1_vx_leg4 * t335 + g1_vy_leg4 * t340);
+        let t539 = t99 * t306 - t102 * t298 + t252;
+        let minus_rate_dot_1_leg4_2 = t100 * t539;
+        let t541 = t535 * minus_rate_dot_1_leg4_2;
+        let t546 = minus_g1_vx_leg4 * t361 - g1_vy_leg4 * t363 - g1_wz_leg4 * t366;
+        let t547 = t546 * minus_rate_dot_1_leg4_2;
+        let t552 = g1_vy_leg4 * t378 - minus_g1_vx_leg4 * t373 + g1_wz_leg4 * t384;
+        let t553 = t552 * minus_rate_dot_1_leg4_2;
+        let rate_1_leg4 = g1_vy_leg4 * t248 - minus_g1_vx_leg4 * t246;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t100 - t6 * t100);
+        let t571 = g2_vx_leg4 * t335 + g2_vx_leg4 * t340 + g2_wz_leg4 * t350;
         let c2_leg4 = 2.079725827019258 * t86;
-        let t604 = minus_s2_leg4 * t255 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t606 = c2_leg4 * minus_rate_dot_1_leg4_2;
-        let t615 = 2.079725827019258 * t582;
-        let t629 = rate_3_leg1 - rate_2_leg4;
-        let t640 = c_phi * t288 - s_phi * t297;
-        let t642 = rate_3_leg1 * rate_3_leg1;
-        let t645 = c_phi * t642 + s_phi * rate_dot_3_leg1;
-        let t649 = c_phi * rate_dot_3_leg1 - s_phi * t642;
-        let t668 = c_phi * t297 + s_phi * t288;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t100
+            * (0.7071067811865476 * t307 - t252 * c2_leg4);
+        let t583 = g2_vx_leg4 * t363 - g2_vx_leg4 * t361 - g2_wz_leg4 * t366;
+        let t589 = g2_vx_leg4 * t373 - g2_vx_leg4 * t378 + g2_wz_leg4 * t384;
+        let t593 = minus_s2_leg4 * t251 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t595 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t604 = 2.079725827019258 * t307;
+        let t618 = rate_3_leg1 - rate_2_leg4;
+        let t627 = rate_3_leg1 * rate_3_leg1;
+        let t630 = s_phi * t627 - c_phi * rate_dot_3_leg1;
+        let t634 = c_phi * t627 + s_phi * rate_dot_3_leg1;
+        let t639 = c_phi * t286 - s_phi * t289;
+        let t657 = s_phi * t286 + c_phi * t289;
         Ok([
             [
                 rate_dot_1_leg1_2, rate_dot_1_leg1_2, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, t344 * rate_dot_2_leg1,
-                minus_s2_leg1 * t211 + c2_leg1 * rate_dot_2_leg1 + t344 * t384,
-                2.079725827019258 * t346 + t344 * t303, rate_dot_1_leg1_2,
-                ::overact::math::signed(t344, rate_2_leg1),
-                ::overact::math::signed(t342 - t344, t398), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t425 * minus_rate_dot_2_leg2), -(t425 * t447), -(t425 * t411), 0.0,
-                ::overact::math::signed(t425, rate_2_leg2),
-                ::overact::math::signed(t342 - t425, t464), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t491 * minus_rate_dot_2_leg3), t491 * t513, -(t491 * t477), 0.0,
-                -::overact::math::signed(t491, minus_rate_2_leg3),
-                ::overact::math::signed(t342 - t491, t530), -t550, -t550, t540 * rate_1_leg4,
-                ::overact::math::signed(t540, rate_1_leg4), t540, -(t580 * minus_rate_dot_2_leg4),
-                t540 * t604 - t580 * t606, -(t540 * t615 + t580 * t548), -t550,
-                ::overact::math::signed(t580, rate_2_leg4),
-                ::overact::math::signed(t342 - t580, t629), t342 * rate_dot_3_leg1,
-                t342 * t640 - (t327 * t645 + t332 * t649), t332 * t645 - t327 * t649 - t342 * t668,
-                t327 * t297 - t332 * t288,
+                ::overact::math::sign(rate_1_leg1), 1.0, t352 * rate_dot_2_leg1,
+                minus_s2_leg1 * t207 + c2_leg1 * rate_dot_2_leg1 + t352 * t391,
+                2.079725827019258 * t354 + t352 * t311, rate_dot_1_leg1_2,
+                ::overact::math::signed(t352, rate_2_leg1),
+                ::overact::math::signed(t350 - t352, t405), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t428 * minus_rate_dot_2_leg2), -(t428 * t448), -(t428 * t414), 0.0,
+                ::overact::math::signed(t428, rate_2_leg2),
+                ::overact::math::signed(t350 - t428, t465), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t488 * minus_rate_dot_2_leg3), t488 * t508, -(t488 * t474), 0.0,
+                -::overact::math::signed(t488, minus_rate_2_leg3),
+                ::overact::math::signed(t350 - t488, t525), -t541, -t541, t535 * rate_1_leg4,
+                ::overact::math::signed(t535, rate_1_leg4), t535, -(t571 * minus_rate_dot_2_leg4),
+                t535 * t593 - t571 * t595, -(t535 * t604 + t571 * t539), -t541,
+                ::overact::math::signed(t571, rate_2_leg4),
+                ::overact::math::signed(t350 - t571, t618), t350 * rate_dot_3_leg1,
+                t340 * t630 - t335 * t634 + t350 * t639, t335 * t630 + t340 * t634 - t350 * t657,
+                t335 * t289 - t340 * t286,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t360 * rate_dot_2_leg1), -(t360 * t384), -(t360 * t303),
-                0.0, -::overact::math::signed(t360, rate_2_leg1),
-                ::overact::math::signed(t360 - t358, t398), -minus_rate_dot_1_leg2_2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t368 * rate_dot_2_leg1), -(t368 * t391), -(t368 * t311),
+                0.0, -::overact::math::signed(t368, rate_2_leg1),
+                ::overact::math::signed(t368 - t366, t405), -minus_rate_dot_1_leg2_2,
                 -minus_rate_dot_1_leg2_2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t438 * minus_rate_dot_2_leg2),
-                minus_s2_leg2 * t226 - c2_leg2 * minus_rate_dot_2_leg2 - t438 * t447,
-                -(2.079725827019258 * t427 + t438 * t411), -minus_rate_dot_1_leg2_2,
-                ::overact::math::signed(t438, rate_2_leg2),
-                -::overact::math::signed(t438 + t358, t464), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t504 * minus_rate_dot_2_leg3), t504 * t513, -(t504 * t477), 0.0,
-                -::overact::math::signed(t504, minus_rate_2_leg3),
-                -::overact::math::signed(t504 + t358, t530), -t556, -t556, t555 * rate_1_leg4,
-                ::overact::math::signed(t555, rate_1_leg4), t555, -(t593 * minus_rate_dot_2_leg4),
-                t555 * t604 - t593 * t606, -(t555 * t615 + t593 * t548), -t556,
-                ::overact::math::signed(t593, rate_2_leg4),
-                -::overact::math::signed(t593 + t358, t629), -(t358 * rate_dot_3_leg1),
-                t353 * t645 - t355 * t649 - t358 * t640, t353 * t649 + t355 * t645 + t358 * t668,
-                -(t353 * t297 + t355 * t288),
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t440 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t222 - c2_leg2 * minus_rate_dot_2_leg2 - t440 * t448,
+                -(2.079725827019258 * t302 + t440 * t414), -minus_rate_dot_1_leg2_2,
+                ::overact::math::signed(t440, rate_2_leg2),
+                -::overact::math::signed(t440 + t366, t465), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t500 * minus_rate_dot_2_leg3), t500 * t508, -(t500 * t474), 0.0,
+                -::overact::math::signed(t500, minus_rate_2_leg3),
+                -::overact::math::signed(t500 + t366, t525), -t547, -t547, t546 * rate_1_leg4,
+                ::overact::math::signed(t546, rate_1_leg4), t546, -(t583 * minus_rate_dot_2_leg4),
+                t546 * t593 - t583 * t595, -(t546 * t604 + t583 * t539), -t547,
+                ::overact::math::signed(t583, rate_2_leg4),
+                -::overact::math::signed(t583 + t366, t618), -(t366 * rate_dot_3_leg1),
+                t361 * t634 + t363 * t630 - t366 * t639, t363 * t634 - t361 * t630 + t366 * t657,
+                -(t361 * t289 + t363 * t286),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t378 * rate_dot_2_leg1, t378 * t384, t378 * t303, 0.0,
-                ::overact::math::signed(t378, rate_2_leg1),
-                ::overact::math::signed(t376 - t378, t398), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t444 * minus_rate_dot_2_leg2), -(t444 * t447), -(t444 * t411), 0.0,
-                ::overact::math::signed(t444, rate_2_leg2),
-                ::overact::math::signed(t376 - t444, t464), -minus_rate_dot_1_leg3_2,
+                0.0, 0.0, 0.0, 0.0, 0.0, t386 * rate_dot_2_leg1, t386 * t391, t386 * t311, 0.0,
+                ::overact::math::signed(t386, rate_2_leg1),
+                ::overact::math::signed(t384 - t386, t405), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t446 * minus_rate_dot_2_leg2), -(t446 * t448), -(t446 * t414), 0.0,
+                ::overact::math::signed(t446, rate_2_leg2),
+                ::overact::math::signed(t384 - t446, t465), -minus_rate_dot_1_leg3_2,
                 -minus_rate_dot_1_leg3_2, -minus_rate_1_leg3,
-                -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t510 * minus_rate_dot_2_leg3),
-                minus_s2_leg3 * t242 + minus_c2_leg3 * minus_rate_dot_2_leg3
-                    + t510 * t513,
-                -(2.079725827019258 * t493 + t510 * t477),
+                -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t506 * minus_rate_dot_2_leg3),
+                minus_s2_leg3 * t238 + minus_c2_leg3 * minus_rate_dot_2_leg3
+                    + t506 * t508,
+                -(2.079725827019258 * t296 + t506 * t474),
                 -minus_rate_dot_1_leg3_2,
-                -::overact::math::signed(t510, minus_rate_2_leg3),
-                ::overact::math::signed(t376 - t510, t530),
-                -t562,
-                -t562,
-                t561 * rate_1_leg4,
-                ::overact::math::signed(t561, rate_1_leg4),
-                t561,
-                -(t599 * minus_rate_dot_2_leg4),
-                t561 * t604 - t599 * t606,
-                -(t561 * t615 + t599 * t548),
-                -t562,
-                ::overact::math::signed(t599, rate_2_leg4),
-                ::overact::math::signed(t376 - t599, t629),
-                t376 * rate_dot_3_leg1,
-                t370 * t649 - t365 * t645 + t376 * t640,
-                -(t365 * t649 + t370 * t645 + t376 * t668),
-                t365 * t297 + t370 * t288,
+                -::overact::math::signed(t506, minus_rate_2_leg3),
+                ::overact::math::signed(t384 - t506, t525),
+                -t553,
+                -t553,
+                t552 * rate_1_leg4,
+                ::overact::math::signed(t552, rate_1_leg4),
+                t552,
+                -(t589 * minus_rate_dot_2_leg4),
+                t552 * t593 - t589 * t595,
+                -(t552 * t604 + t589 * t539),
+                -t553,
+                ::overact::math::signed(t589, rate_2_leg4),
+                ::overact::math::signed(t384 - t589, t618),
+                t384 * rate_dot_3_leg1,
+                t384 * t639 - (t373 * t634 + t378 * t630),
+                t373 * t630 - t378 * t634 - t384 * t657,
+                t373 * t289 + t378 * t286,
             ],
         ])
     }
@@ -2967,7 +2954,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 319 operations (126 additions, 189 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 265 intermediates.
+    /// 263 operations (95 additions, 164 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 209 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2979,168 +2966,154 @@ impl Planar4Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = twist[2] * twist[2];
         let t5 = c_phi * t2 + s_phi * acceleration[2];
-        let t8 = c_phi * acceleration[2] - s_phi * t2;
-        let t15 = c_phi - s_phi;
-        let t16 = 0.05656854249492381 * t15;
-        let t18 = pose[0] + t16 - 0.21213203435596426;
-        let t19 = s_phi + c_phi;
-        let t20 = 0.05656854249492381 * t19;
-        let t22 = pose[1] + t20 - 0.21213203435596426;
-        let t23 = t18 + t22;
+        let t8 = s_phi * t2 - c_phi * acceleration[2];
+        let t16 = 0.05656854249492381 * (s_phi + c_phi);
+        let t20 = 0.05656854249492381 * (c_phi - s_phi);
+        let t22 = pose[0] - (0.21213203435596426 - t16) + t20 + -0.21213203435596426;
+        let t23 = pose[1] + t22;
         let t24 = 1.4705882352941178 * t23;
-        let t25 = t22 - t18;
-        let t33 = 8.650519031141869
-            * (0.5 * (t25 * t25) - (t18 * t18 + t22 * t22 - 0.1156));
-        ::overact::guard::reach(t33, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t33);
+        let t25 = 0.7071067811865476 * t23;
+        let t28 = 8.650519031141869 * (0.1156 - t25 * t25);
+        ::overact::guard::reach(t28, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t28);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t35 = 0.7071067811865476 * minus_s2_leg1;
-        let t36 = t24 + t35;
-        let t37 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t36 * t37;
-        let t39 = t35 - t24;
-        let t40 = t16 * acceleration[2];
-        let t42 = t20 * twist[2];
-        let t43 = twist[2] * t42;
-        let t44 = acceleration[1] + t40 - t43;
-        let t46 = t20 * acceleration[2];
-        let t48 = t16 * twist[2];
-        let t49 = twist[2] * t48;
-        let t50 = acceleration[0] - t46 - t49;
-        let g2_vx_leg1 = 2.079725827019258 * t37;
-        let t54 = twist[0] - t42;
-        let t56 = twist[1] + t48;
-        let rate_2_leg1 = g2_vx_leg1 * t54 + g2_vx_leg1 * t56;
-        let t59 = rate_2_leg1 * rate_2_leg1;
-        let t61 = t39 * t44 - t36 * t50 - 0.34 * t59;
-        let rate_dot_1_leg1 = t37 * t61;
-        let g1_vy_leg1 = t39 * t37;
-        let g1_wz_leg1 = t16 * g1_vy_leg1 + t20 * minus_g1_vx_leg1;
-        let t71 = pose[0] - t20 + 0.21213203435596426;
-        let t73 = pose[1] + t16 - 0.21213203435596426;
-        let t74 = t71 + t73;
-        let t82 = 8.650519031141869
-            * (0.5 * (t74 * t74) - (t71 * t71 + t73 * t73 - 0.1156));
-        ::overact::guard::reach(t82, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t82);
+        let t30 = 0.7071067811865476 * minus_s2_leg1;
+        let t31 = t24 + t30;
+        let t32 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t31 * t32;
+        let t34 = t30 - t24;
+        let t36 = 0.05656854249492381 * (t5 - t8);
+        let t37 = acceleration[1] - t36;
+        let t38 = acceleration[0] + acceleration[1];
+        let t39 = t38 - t37;
+        let t40 = acceleration[1] + t36;
+        let t43 = t16 * twist[2];
+        let t45 = acceleration[1] - t20 * acceleration[2] + twist[2] * t43;
+        let t46 = t39 + t45;
+        let t47 = t46 - t40;
+        let t48 = t47 - t37;
+        let t49 = t39 - t48;
+        let t51 = t38 - t45;
+        let t52 = t40 - t51;
+        let t53 = t45 - t52;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let t57 = twist[0] - t43;
+        let t58 = t20 * twist[2];
+        let t59 = twist[1] + t58;
+        let rate_2_leg1 = g2_vx_leg1 * (t57 + t59);
+        let t62 = rate_2_leg1 * rate_2_leg1;
+        let t64 = t34 * t49 - t31 * t53 - 0.34 * t62;
+        let rate_dot_1_leg1 = t32 * t64;
+        let g1_vy_leg1 = t34 * t32;
+        let g1_wz_leg1 = t20 * g1_vy_leg1 + t16 * minus_g1_vx_leg1;
+        let t73 = pose[0] + pose[0];
+        let t74 = t23 - t73;
+        let t75 = 0.7071067811865476 * t74;
+        let t78 = 8.650519031141869 * (0.1156 - t75 * t75);
+        ::overact::guard::reach(t78, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t78);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t84 = 0.7071067811865476 * minus_s2_leg2;
-        let t85 = t73 - t71;
-        let t86 = 1.4705882352941178 * t85;
-        let t87 = t84 - t86;
-        let t88 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t87 * t88;
-        let t91 = acceleration[0] - t40 + t43;
-        let t93 = t84 + t86;
-        let t95 = acceleration[1] - t46 - t49;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t88;
-        let t99 = twist[1] - t42;
-        let t101 = twist[0] - t48;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t99 - minus_g2_vx_leg2 * t101;
-        let t104 = rate_2_leg2 * rate_2_leg2;
-        let t106 = t87 * t91 + t93 * t95 + 0.34 * t104;
-        let minus_rate_dot_1_leg2 = t88 * t106;
-        let minus_g1_vy_leg2 = t93 * t88;
-        let g1_wz_leg2 = t20 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
-        let t116 = pose[0] - t16 + 0.21213203435596426;
-        let t118 = pose[1] - t20 + 0.21213203435596426;
-        let t119 = t116 + t118;
-        let t120 = 1.4705882352941178 * t119;
-        let t121 = t116 - t118;
-        let t129 = 8.650519031141869
-            * (0.5 * (t121 * t121) - (t116 * t116 + t118 * t118 - 0.1156));
-        ::overact::guard::reach(t129, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t129);
+        let t80 = 0.7071067811865476 * minus_s2_leg2;
+        let t81 = 1.4705882352941178 * t74;
+        let t82 = t80 - t81;
+        let t83 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t82 * t83;
+        let t86 = t80 + t81;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t83;
+        let t90 = twist[0] + t43;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t59 - t90);
+        let t93 = rate_2_leg2 * rate_2_leg2;
+        let t95 = t82 * t47 + t86 * t37 + 0.34 * t93;
+        let minus_rate_dot_1_leg2 = t83 * t95;
+        let minus_g1_vy_leg2 = t86 * t83;
+        let g1_wz_leg2 = t16 * minus_g1_vy_leg2 + t20 * minus_g1_vx_leg2;
+        let t104 = t22 - pose[1];
+        let t105 = t73 - t104;
+        let t106 = 1.4705882352941178 * t105;
+        let t107 = 0.7071067811865476 * t105;
+        let t110 = 8.650519031141869 * (0.1156 - t107 * t107);
+        ::overact::guard::reach(t110, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t110);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t131 = 0.7071067811865476 * minus_s2_leg3;
-        let t132 = t120 - t131;
-        let t133 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t132 * t133;
-        let t136 = acceleration[0] + t46 + t49;
-        let t138 = t131 + t120;
-        let t140 = acceleration[1] - t40 + t43;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t133;
-        let t144 = twist[0] + t42;
-        let t146 = twist[1] - t48;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t144 + minus_g2_vx_leg3 * t146;
-        let t149 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t151 = t132 * t136 + t138 * t140 + 0.34 * t149;
-        let minus_rate_dot_1_leg3 = t133 * t151;
-        let minus_g1_vy_leg3 = t138 * t133;
-        let g1_wz_leg3 = t16 * minus_g1_vy_leg3 - t20 * minus_g1_vx_leg3;
-        let t161 = pose[0] + t20 - 0.21213203435596426;
-        let t163 = pose[1] - t16 + 0.21213203435596426;
-        let t164 = t161 - t163;
-        let t165 = 1.4705882352941178 * t164;
-        let t166 = t161 + t163;
-        let t174 = 8.650519031141869
-            * (0.5 * (t166 * t166) - (t161 * t161 + t163 * t163 - 0.1156));
-        ::overact::guard::reach(t174, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t174);
+        let t112 = 0.7071067811865476 * minus_s2_leg3;
+        let t113 = t106 - t112;
+        let t114 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t113 * t114;
+        let t117 = t112 + t106;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t114;
+        let t121 = twist[0] - t58;
+        let t122 = twist[1] + t43;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t121 + t122);
+        let t125 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t127 = t113 * t39 + t117 * t45 + 0.34 * t125;
+        let minus_rate_dot_1_leg3 = t114 * t127;
+        let minus_g1_vy_leg3 = t117 * t114;
+        let g1_wz_leg3 = t20 * minus_g1_vy_leg3 - t16 * minus_g1_vx_leg3;
+        let t136 = 1.4705882352941178 * t104;
+        let t137 = 0.7071067811865476 * t104;
+        let t140 = 8.650519031141869 * (0.1156 - t137 * t137);
+        ::overact::guard::reach(t140, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t140);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t176 = 0.7071067811865476 * minus_s2_leg4;
-        let t177 = t165 - t176;
-        let t178 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = t177 * t178;
-        let t181 = acceleration[0] + t40 - t43;
-        let t183 = t176 + t165;
-        let t185 = acceleration[1] + t46 + t49;
-        let g2_vx_leg4 = 2.079725827019258 * t178;
-        let t189 = twist[0] + t48;
-        let t191 = twist[1] + t42;
-        let rate_2_leg4 = g2_vx_leg4 * t189 - g2_vx_leg4 * t191;
-        let t194 = rate_2_leg4 * rate_2_leg4;
-        let t196 = t177 * t181 - t183 * t185 + 0.34 * t194;
-        let minus_rate_dot_1_leg4 = t178 * t196;
-        let g1_vy_leg4 = t183 * t178;
-        let g1_wz_leg4 = t20 * g1_vy_leg4 - t16 * minus_g1_vx_leg4;
-        let rate_1_leg1 = g1_vy_leg1 * t56 - minus_g1_vx_leg1 * t54;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t101 + minus_g1_vy_leg2 * t99;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t144 + minus_g1_vy_leg3 * t146;
-        let rate_1_leg4 = g1_vy_leg4 * t191 - minus_g1_vx_leg4 * t189;
-        let t242 = t50 + t44;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t37
-            * (0.7071067811865476 * t242 + 0.7071067811865476 * t23 * t59);
-        let t248 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t15 * t37 - t19 * t37);
-        let t255 = t91 - t95;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t88
-            * (0.7071067811865476 * t255 - 0.7071067811865476 * t85 * t104);
-        let t261 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t15 * t88 - t19 * t88);
-        let t268 = t136 + t140;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t133
-            * (0.7071067811865476 * t268 + 0.7071067811865476 * t119 * t149);
-        let t274 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t15 * t133 - t19 * t133);
-        let t281 = t185 - t181;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t178
-            * (0.7071067811865476 * t281 - 0.7071067811865476 * t164 * t194);
-        let t287 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t15 * t178 - t19 * t178);
-        let t293 = g2_vx_leg1 * t61;
-        let t294 = 2.079725827019258 * t242;
-        let t302 = 2.079725827019258 * t255;
-        let t304 = minus_g2_vx_leg2 * t106;
-        let t311 = 2.079725827019258 * t268;
-        let t313 = minus_g2_vx_leg3 * t151;
-        let t320 = 2.079725827019258 * t281;
-        let t322 = g2_vx_leg4 * t196;
-        let t329 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t331 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t333 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t335 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t337 = twist[2] - rate_2_leg1;
-        let t338 = ::overact::math::signed(g2_vx_leg1, t337);
-        let t341 = twist[2] - rate_2_leg2;
-        let t342 = ::overact::math::signed(minus_g2_vx_leg2, t341);
-        let t345 = minus_rate_2_leg3 + twist[2];
-        let t346 = ::overact::math::signed(minus_g2_vx_leg3, t345);
-        let t349 = twist[2] - rate_2_leg4;
-        let t350 = ::overact::math::signed(g2_vx_leg4, t349);
+        let t142 = 0.7071067811865476 * minus_s2_leg4;
+        let t143 = t136 - t142;
+        let t144 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t143 * t144;
+        let t147 = t142 + t136;
+        let g2_vx_leg4 = 2.079725827019258 * t144;
+        let t151 = twist[1] - t58;
+        let rate_2_leg4 = g2_vx_leg4 * (t57 - t151);
+        let t154 = rate_2_leg4 * rate_2_leg4;
+        let t156 = t143 * t51 - t147 * t40 + 0.34 * t154;
+        let minus_rate_dot_1_leg4 = t144 * t156;
+        let g1_vy_leg4 = t147 * t144;
+        let g1_wz_leg4 = t16 * g1_vy_leg4 - t20 * minus_g1_vx_leg4;
+        let rate_1_leg1 = g1_vy_leg1 * t59 - minus_g1_vx_leg1 * t57;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t121
+            + minus_g1_vy_leg2 * (twist[1] - t43);
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t90 + minus_g1_vy_leg3 * t151;
+        let rate_1_leg4 = g1_vy_leg4 * t122 - minus_g1_vx_leg4 * (twist[0] + t58);
+        let t204 = t53 + t49;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t32
+            * (0.7071067811865476 * t204 + t25 * t62);
+        let t209 = g2_vx_leg1 * rate_dot_2_leg1;
+        let t210 = t20 - t16;
+        let g2_wz_leg1 = g2_vx_leg1 * t210;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t83
+            * (0.7071067811865476 * t48 - t75 * t93);
+        let t218 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t210;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t114
+            * (0.7071067811865476 * t46 + t107 * t125);
+        let t226 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t210;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t144
+            * (0.7071067811865476 * t52 - t137 * t154);
+        let t234 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t210;
+        let t237 = g2_vx_leg1 * t64;
+        let t238 = 2.079725827019258 * t204;
+        let t246 = 2.079725827019258 * t48;
+        let t248 = minus_g2_vx_leg2 * t95;
+        let t255 = 2.079725827019258 * t46;
+        let t257 = minus_g2_vx_leg3 * t127;
+        let t264 = 2.079725827019258 * t52;
+        let t266 = g2_vx_leg4 * t156;
+        let t273 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t275 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t277 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t279 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t281 = twist[2] - rate_2_leg1;
+        let t282 = ::overact::math::signed(g2_vx_leg1, t281);
+        let t285 = twist[2] - rate_2_leg2;
+        let t286 = ::overact::math::signed(minus_g2_vx_leg2, t285);
+        let t289 = minus_rate_2_leg3 + twist[2];
+        let t290 = ::overact::math::signed(minus_g2_vx_leg3, t289);
+        let t293 = twist[2] - rate_2_leg4;
+        let t294 = ::overact::math::signed(g2_vx_leg4, t293);
         Ok([
             [
-                0.0, -t5, -t8, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
+                0.0, -t5, t8, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, minus_g1_vx_leg3 * minus_rate_dot_1_leg3,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4, -(minus_g1_vx_leg1 * rate_1_leg1),
                 minus_g1_vx_leg2 * minus_rate_1_leg2, minus_g1_vx_leg3 * minus_rate_1_leg3,
@@ -3149,13 +3122,13 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
-                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t248, t261, t274, -t287,
-                t293 - minus_g1_vx_leg1 * t294, minus_g1_vx_leg2 * t302 + t304,
-                minus_g1_vx_leg3 * t311 + t313, minus_g1_vx_leg4 * t320 - t322, t329, -t331, t333,
-                t335, -t338, t342, t346, -t350,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t209, t218, t226, -t234,
+                t237 - minus_g1_vx_leg1 * t238, minus_g1_vx_leg2 * t246 + t248,
+                minus_g1_vx_leg3 * t255 + t257, minus_g1_vx_leg4 * t264 - t266, t273, -t275, t277,
+                t279, -t282, t286, t290, -t294,
             ],
             [
-                0.0, t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, minus_g1_vy_leg3 * minus_rate_dot_1_leg3,
                 -(g1_vy_leg4 * minus_rate_dot_1_leg4), g1_vy_leg1 * rate_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_1_leg2, minus_g1_vy_leg3 * minus_rate_1_leg3,
@@ -3163,13 +3136,13 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
-                -minus_g1_vy_leg3, g1_vy_leg4, t248, -t261, t274, t287, g1_vy_leg1 * t294 + t293,
-                minus_g1_vy_leg2 * t302 - t304, minus_g1_vy_leg3 * t311 + t313,
-                t322 - g1_vy_leg4 * t320, t329, t331, t333, -t335, -t338, -t342, t346, t350,
+                -minus_g1_vy_leg3, g1_vy_leg4, t209, -t218, t226, t234, g1_vy_leg1 * t238 + t237,
+                minus_g1_vy_leg2 * t246 - t248, minus_g1_vy_leg3 * t255 + t257,
+                t266 - g1_vy_leg4 * t264, t273, t275, t277, -t279, -t282, -t286, t290, t294,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1, -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 -(g1_wz_leg3 * minus_rate_dot_1_leg3), -(g1_wz_leg4 * minus_rate_dot_1_leg4),
                 g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3180,17 +3153,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t294 + g2_wz_leg1 * t61,
-                -(g1_wz_leg2 * t302 + g2_wz_leg2 * t106), -(g1_wz_leg3 * t311 + g2_wz_leg3 * t151),
-                -(g1_wz_leg4 * t320 + g2_wz_leg4 * t196),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t238 + g2_wz_leg1 * t64,
+                -(g1_wz_leg2 * t246 + g2_wz_leg2 * t95), -(g1_wz_leg3 * t255 + g2_wz_leg3 * t127),
+                -(g1_wz_leg4 * t264 + g2_wz_leg4 * t156),
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t337),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t341),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t345),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t349),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t281),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t285),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t289),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t293),
             ],
         ])
     }
@@ -3205,7 +3178,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 267 operations (92 additions, 171 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 217 intermediates.
+    /// 241 operations (84 additions, 153 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 193 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3225,129 +3198,127 @@ impl Planar4Prr {
         ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = twist[2] * twist[2];
         let t5 = c_phi * t2 + s_phi * acceleration[2];
-        let t8 = c_phi * acceleration[2] - s_phi * t2;
+        let t8 = s_phi * t2 - c_phi * acceleration[2];
         let t17 = c2_leg1 - s2_leg1;
         let t18 = 1.0 / s2_leg1;
         let t19 = 0.7071067811865476 * t18;
         let g1_vx_leg1 = t17 * t19;
-        let t21 = s_phi + c_phi;
-        let t22 = 0.05656854249492381 * t21;
-        let t23 = t22 * acceleration[2];
-        let t25 = c_phi - s_phi;
-        let t26 = 0.05656854249492381 * t25;
+        let t22 = 0.05656854249492381 * (c_phi - s_phi);
+        let t26 = 0.05656854249492381 * (s_phi + c_phi);
         let t27 = t26 * twist[2];
-        let t28 = twist[2] * t27;
-        let t30 = 0.2404163056034262 * t17;
+        let t29 = acceleration[1] - t22 * acceleration[2] + twist[2] * t27;
+        let t31 = 0.05656854249492381 * (t5 - t8);
+        let t32 = acceleration[1] + t31;
+        let t33 = acceleration[0] + acceleration[1];
+        let t34 = t33 - t29;
+        let t35 = t32 - t34;
+        let t36 = t29 - t35;
         let minus_g2_vx_leg1 = 2.079725827019258 * t18;
-        let t32 = t22 * twist[2];
-        let t33 = twist[0] - t32;
-        let t35 = twist[1] + t27;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t33 + minus_g2_vx_leg1 * t35;
-        let t38 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t40 = acceleration[0] - t23 - t28 + t30 * t38;
-        let t42 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t42 * t19;
-        let t44 = t26 * acceleration[2];
-        let t46 = twist[2] * t32;
-        let t48 = 0.2404163056034262 * t42;
-        let t50 = acceleration[1] + t44 - t46 + t48 * t38;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t50;
-        let g1_wz_leg1 = g1_vy_leg1 * t26 - g1_vx_leg1 * t22;
-        let t61 = c2_leg2 + s2_leg2;
-        let t62 = 1.0 / s2_leg2;
-        let t63 = 0.7071067811865476 * t62;
-        let minus_g1_vx_leg2 = t61 * t63;
-        let t67 = t17 * t30 + t42 * t48;
-        let g2_vx_leg2 = 2.079725827019258 * t62;
-        let t69 = twist[0] - t27;
-        let t71 = twist[1] - t32;
-        let rate_2_leg2 = g2_vx_leg2 * t69 - g2_vx_leg2 * t71;
-        let t74 = rate_2_leg2 * rate_2_leg2;
-        let t77 = acceleration[0] - t44 + t46;
-        let t79 = s2_leg2 - c2_leg2;
-        let t81 = acceleration[1] - t23 - t28;
-        let rate_dot_1_leg2 = t63 * (t67 * t74 - (t61 * t77 + t79 * t81));
-        let minus_g1_vy_leg2 = t79 * t63;
-        let g1_wz_leg2 = t22 * minus_g1_vy_leg2 + t26 * minus_g1_vx_leg2;
-        let t95 = s2_leg3 - c2_leg3;
-        let t96 = 1.0 / s2_leg3;
-        let t97 = 0.7071067811865476 * t96;
-        let g1_vx_leg3 = t95 * t97;
-        let t99 = s2_leg3 + c2_leg3;
-        let t101 = acceleration[1] - t44 + t46;
-        let t104 = acceleration[0] + t23 + t28;
-        let g2_vx_leg3 = 2.079725827019258 * t96;
-        let t108 = twist[0] + t32;
-        let t110 = twist[1] - t27;
-        let rate_2_leg3 = g2_vx_leg3 * t108 + g2_vx_leg3 * t110;
-        let t113 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t97 * (t99 * t101 - t95 * t104 - t67 * t113);
-        let minus_g1_vy_leg3 = t99 * t97;
-        let g1_wz_leg3 = t26 * minus_g1_vy_leg3 + t22 * g1_vx_leg3;
-        let t126 = c2_leg4 + s2_leg4;
-        let t127 = 1.0 / s2_leg4;
-        let t128 = 0.7071067811865476 * t127;
-        let g1_vx_leg4 = t126 * t128;
-        let t131 = acceleration[0] + t44 - t46;
-        let t133 = c2_leg4 - s2_leg4;
-        let t135 = acceleration[1] + t23 + t28;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t127;
-        let t139 = twist[1] + t32;
-        let t141 = twist[0] + t27;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t139 - minus_g2_vx_leg4 * t141;
-        let t144 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = t128 * (t126 * t131 - t133 * t135 + t67 * t144);
-        let minus_g1_vy_leg4 = t133 * t128;
-        let g1_wz_leg4 = t26 * g1_vx_leg4 - t22 * minus_g1_vy_leg4;
-        let rate_1_leg1 = g1_vx_leg1 * t33 + g1_vy_leg1 * t35;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t69 + minus_g1_vy_leg2 * t71;
-        let rate_1_leg3 = g1_vx_leg3 * t108 - minus_g1_vy_leg3 * t110;
-        let rate_1_leg4 = g1_vx_leg4 * t141 - minus_g1_vy_leg4 * t139;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t40 + minus_g2_vx_leg1 * t50;
-        let t194 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t18 * t21 - t18 * t25);
-        let t201 = t77 - t81;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t62
-            * (0.7071067811865476 * t201 - t74 * (0.34 * c2_leg2));
-        let t207 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t21 * t62 - t25 * t62);
-        let t216 = t104 + t101;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t96
-            * (t113 * (0.34 * c2_leg3) - 0.7071067811865476 * t216);
-        let t220 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t21 * t96 - t25 * t96);
-        let t227 = t135 - t131;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t127
-            * (0.7071067811865476 * t227 - t144 * (0.34 * c2_leg4));
-        let t233 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t21 * t127 - t25 * t127);
-        let t241 = s2_leg1 * minus_rate_dot_2_leg1 - c2_leg1 * t38;
-        let t243 = s2_leg1 * rate_dot_1_leg1;
-        let t244 = minus_g2_vx_leg1 * t243;
-        let t251 = 2.079725827019258 * t201;
-        let t253 = s2_leg2 * rate_dot_1_leg2;
-        let t254 = g2_vx_leg2 * t253;
-        let t261 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t262 = g2_vx_leg3 * t261;
-        let t263 = 2.079725827019258 * t216;
-        let t271 = s2_leg4 * rate_dot_1_leg4;
-        let t272 = minus_g2_vx_leg4 * t271;
-        let t273 = 2.079725827019258 * t227;
-        let t281 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t283 = ::overact::math::signed(g2_vx_leg2, rate_2_leg2);
-        let t285 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t287 = ::overact::math::signed(minus_g2_vx_leg4, rate_2_leg4);
-        let t289 = minus_rate_2_leg1 + twist[2];
-        let t290 = ::overact::math::signed(minus_g2_vx_leg1, t289);
-        let t293 = twist[2] - rate_2_leg2;
-        let t294 = ::overact::math::signed(g2_vx_leg2, t293);
-        let t297 = twist[2] - rate_2_leg3;
-        let t298 = ::overact::math::signed(g2_vx_leg3, t297);
-        let t301 = twist[2] - rate_2_leg4;
-        let t302 = ::overact::math::signed(minus_g2_vx_leg4, t301);
+        let t38 = twist[0] - t27;
+        let t39 = t22 * twist[2];
+        let t40 = twist[1] + t39;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t38 + t40);
+        let t44 = 0.2404163056034262 * (minus_rate_2_leg1 * minus_rate_2_leg1);
+        let t46 = t36 + t17 * t44;
+        let t48 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t48 * t19;
+        let t50 = acceleration[1] - t31;
+        let t51 = t33 - t50;
+        let t52 = t51 + t29;
+        let t53 = t52 - t32;
+        let t54 = t53 - t50;
+        let t55 = t51 - t54;
+        let t57 = t55 + t48 * t44;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t46 + g1_vy_leg1 * t57;
+        let g1_wz_leg1 = g1_vy_leg1 * t22 - g1_vx_leg1 * t26;
+        let t68 = c2_leg2 + s2_leg2;
+        let t69 = 1.0 / s2_leg2;
+        let t70 = 0.7071067811865476 * t69;
+        let minus_g1_vx_leg2 = t68 * t70;
+        let t72 = 0.2404163056034262 + 0.2404163056034262;
+        let g2_vx_leg2 = 2.079725827019258 * t69;
+        let t74 = twist[0] + t27;
+        let minus_rate_2_leg2 = g2_vx_leg2 * (t40 - t74);
+        let t77 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t80 = s2_leg2 - c2_leg2;
+        let rate_dot_1_leg2 = t70 * (t72 * t77 - (t68 * t53 + t80 * t50));
+        let minus_g1_vy_leg2 = t80 * t70;
+        let g1_wz_leg2 = t26 * minus_g1_vy_leg2 + t22 * minus_g1_vx_leg2;
+        let t94 = s2_leg3 - c2_leg3;
+        let t95 = 1.0 / s2_leg3;
+        let t96 = 0.7071067811865476 * t95;
+        let g1_vx_leg3 = t94 * t96;
+        let t98 = s2_leg3 + c2_leg3;
+        let g2_vx_leg3 = 2.079725827019258 * t95;
+        let t103 = twist[0] - t39;
+        let t104 = twist[1] + t27;
+        let rate_2_leg3 = g2_vx_leg3 * (t103 + t104);
+        let t107 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t96 * (t98 * t29 - t94 * t51 - t72 * t107);
+        let minus_g1_vy_leg3 = t98 * t96;
+        let g1_wz_leg3 = t22 * minus_g1_vy_leg3 + t26 * g1_vx_leg3;
+        let t120 = c2_leg4 + s2_leg4;
+        let t121 = 1.0 / s2_leg4;
+        let t122 = 0.7071067811865476 * t121;
+        let g1_vx_leg4 = t120 * t122;
+        let t125 = c2_leg4 - s2_leg4;
+        let minus_g2_vx_leg4 = 2.079725827019258 * t121;
+        let t129 = twist[1] - t39;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t38 - t129);
+        let t132 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let rate_dot_1_leg4 = t122 * (t120 * t34 - t125 * t32 + t72 * t132);
+        let minus_g1_vy_leg4 = t125 * t122;
+        let g1_wz_leg4 = t22 * g1_vx_leg4 - t26 * minus_g1_vy_leg4;
+        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t40;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t103
+            + minus_g1_vy_leg2 * (twist[1] - t27);
+        let rate_1_leg3 = g1_vx_leg3 * t74 - minus_g1_vy_leg3 * t129;
+        let rate_1_leg4 = g1_vx_leg4 * (twist[0] + t39) - minus_g1_vy_leg4 * t104;
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t46 + t57);
+        let t183 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t184 = t26 - t22;
+        let g2_wz_leg1 = minus_g2_vx_leg1 * t184;
+        let rate_dot_2_leg2 = 2.9411764705882355 * t69
+            * (0.7071067811865476 * t54 - t77 * (0.34 * c2_leg2));
+        let t193 = g2_vx_leg2 * rate_dot_2_leg2;
+        let g2_wz_leg2 = g2_vx_leg2 * t184;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t95
+            * (t107 * (0.34 * c2_leg3) - 0.7071067811865476 * t52);
+        let t202 = g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = g2_vx_leg3 * t184;
+        let rate_dot_2_leg4 = 2.9411764705882355 * t121
+            * (0.7071067811865476 * t35 - t132 * (0.34 * c2_leg4));
+        let t211 = minus_g2_vx_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = minus_g2_vx_leg4 * t184;
+        let t215 = 2.079725827019258 * (t36 + t55);
+        let t217 = s2_leg1 * rate_dot_1_leg1;
+        let t218 = minus_g2_vx_leg1 * t217;
+        let t225 = 2.079725827019258 * t54;
+        let t227 = s2_leg2 * rate_dot_1_leg2;
+        let t228 = g2_vx_leg2 * t227;
+        let t235 = s2_leg3 * minus_rate_dot_1_leg3;
+        let t236 = g2_vx_leg3 * t235;
+        let t237 = 2.079725827019258 * t52;
+        let t245 = s2_leg4 * rate_dot_1_leg4;
+        let t246 = minus_g2_vx_leg4 * t245;
+        let t247 = 2.079725827019258 * t35;
+        let t255 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
+        let t257 = -minus_rate_2_leg2;
+        let t258 = ::overact::math::signed(g2_vx_leg2, t257);
+        let t260 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
+        let t262 = -minus_rate_2_leg4;
+        let t263 = ::overact::math::signed(minus_g2_vx_leg4, t262);
+        let t265 = minus_rate_2_leg1 + twist[2];
+        let t266 = ::overact::math::signed(minus_g2_vx_leg1, t265);
+        let t269 = twist[2] + minus_rate_2_leg2;
+        let t270 = ::overact::math::signed(g2_vx_leg2, t269);
+        let t273 = twist[2] - rate_2_leg3;
+        let t274 = ::overact::math::signed(g2_vx_leg3, t273);
+        let t277 = twist[2] + minus_rate_2_leg4;
+        let t278 = ::overact::math::signed(minus_g2_vx_leg4, t277);
         Ok([
             [
-                0.0, -t5, -t8, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -t5, t8, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
                 -(minus_g1_vx_leg2 * rate_dot_1_leg2), -(g1_vx_leg3 * minus_rate_dot_1_leg3),
                 g1_vx_leg4 * rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -3355,12 +3326,12 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, -minus_g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, t194, t207, -t220, -t233, g1_vx_leg1 * t241 + t244,
-                minus_g1_vx_leg2 * t251 - t254, t262 - g1_vx_leg3 * t263, t272 - g1_vx_leg4 * t273,
-                t281, t283, t285, -t287, t290, -t294, -t298, t302,
+                g1_vx_leg3, g1_vx_leg4, t183, t193, -t202, -t211, g1_vx_leg1 * t215 + t218,
+                minus_g1_vx_leg2 * t225 - t228, t236 - g1_vx_leg3 * t237, t246 - g1_vx_leg4 * t247,
+                t255, t258, t260, -t263, t266, -t270, -t274, t278,
             ],
             [
-                0.0, t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
                 -(minus_g1_vy_leg2 * rate_dot_1_leg2), minus_g1_vy_leg3 * minus_rate_dot_1_leg3,
                 -(minus_g1_vy_leg4 * rate_dot_1_leg4), g1_vy_leg1 * rate_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
@@ -3368,14 +3339,14 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t194, -t207, -t220, t233,
-                g1_vy_leg1 * t241 + t244, minus_g1_vy_leg2 * t251 + t254,
-                minus_g1_vy_leg3 * t263 + t262, minus_g1_vy_leg4 * t273 - t272, t281, -t283, t285,
-                t287, t290, t294, -t298, -t302,
+                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t183, -t193, -t202, t211,
+                g1_vy_leg1 * t215 + t218, minus_g1_vy_leg2 * t225 + t228,
+                minus_g1_vy_leg3 * t237 + t236, minus_g1_vy_leg4 * t247 - t246, t255, -t258, t260,
+                t263, t266, t270, -t274, -t278,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(c_phi * acceleration[0] + s_phi * acceleration[1]), 0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1, g1_wz_leg2 * rate_dot_1_leg2,
                 -(g1_wz_leg3 * minus_rate_dot_1_leg3), g1_wz_leg4 * rate_dot_1_leg4,
                 g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3386,17 +3357,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 g2_wz_leg2 * rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t241 - g2_wz_leg1 * t243,
-                -(g1_wz_leg2 * t251 + g2_wz_leg2 * t253), g2_wz_leg3 * t261 - g1_wz_leg3 * t263,
-                -(g1_wz_leg4 * t273 + g2_wz_leg4 * t271),
+                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t215 - g2_wz_leg1 * t217,
+                -(g1_wz_leg2 * t225 + g2_wz_leg2 * t227), g2_wz_leg3 * t235 - g1_wz_leg3 * t237,
+                -(g1_wz_leg4 * t247 + g2_wz_leg4 * t245),
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
+                ::overact::math::signed(g2_wz_leg2, t257),
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t289),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t293),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t297),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t301),
+                ::overact::math::signed(g2_wz_leg4, t262),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t265),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t269),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t273),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t277),
             ],
         ])
     }
@@ -3411,7 +3382,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 471 operations (190 additions, 274 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 414 intermediates.
+    /// 416 operations (159 additions, 250 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 359 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3423,231 +3394,220 @@ impl Planar4Prr {
     ) -> Result<[[f64; 36]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = c_phi - s_phi;
-        let t3 = 0.05656854249492381 * t2;
-        let t4 = s_phi + c_phi;
-        let t5 = 0.05656854249492381 * t4;
-        let t7 = pose[1] + t5 - 0.21213203435596426;
-        let t9 = pose[0] + t3 - 0.21213203435596426;
-        let t10 = t7 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t7 * t7 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[0] + t5 + -0.21213203435596426 + t3 + -0.21213203435596426;
+        let t10 = pose[1] + t9;
+        let t11 = 0.7071067811865476 * t10;
+        let t14 = 8.650519031141869 * (0.1156 - t11 * t11);
+        ::overact::guard::reach(t14, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t14);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t21 = t9 + t7;
-        let t22 = 1.4705882352941178 * t21;
-        let t23 = t20 - t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t23 * t24;
-        let t27 = t22 + t20;
-        let minus_g1_vx_leg1 = t27 * t24;
+        let t16 = 0.7071067811865476 * minus_s2_leg1;
+        let t17 = 1.4705882352941178 * t10;
+        let t18 = t16 - t17;
+        let t19 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t18 * t19;
+        let t22 = t17 + t16;
+        let minus_g1_vx_leg1 = t22 * t19;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t5 * minus_g1_vx_leg1;
-        let t33 = pose[0] - t5 + 0.21213203435596426;
-        let t35 = pose[1] + t3 - 0.21213203435596426;
-        let t36 = t33 + t35;
-        let t44 = 8.650519031141869
-            * (0.5 * (t36 * t36) - (t33 * t33 + t35 * t35 - 0.1156));
-        ::overact::guard::reach(t44, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t44);
+        let t27 = pose[0] + pose[0];
+        let t28 = t10 - t27;
+        let t29 = 0.7071067811865476 * t28;
+        let t32 = 8.650519031141869 * (0.1156 - t29 * t29);
+        ::overact::guard::reach(t32, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t46 = 0.7071067811865476 * minus_s2_leg2;
-        let t47 = t35 - t33;
-        let t48 = 1.4705882352941178 * t47;
-        let t49 = t46 + t48;
-        let t50 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t49 * t50;
-        let t53 = t46 - t48;
-        let minus_g1_vx_leg2 = t53 * t50;
+        let t34 = 0.7071067811865476 * minus_s2_leg2;
+        let t35 = 1.4705882352941178 * t28;
+        let t36 = t34 + t35;
+        let t37 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t36 * t37;
+        let t40 = t34 - t35;
+        let minus_g1_vx_leg2 = t40 * t37;
         let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t60 = pose[0] - t3 + 0.21213203435596426;
-        let t62 = pose[1] - t5 + 0.21213203435596426;
-        let t63 = t60 - t62;
-        let t71 = 8.650519031141869
-            * (0.5 * (t63 * t63) - (t60 * t60 + t62 * t62 - 0.1156));
-        ::overact::guard::reach(t71, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t71);
+        let t46 = t9 - pose[1];
+        let t47 = t27 - t46;
+        let t48 = 0.7071067811865476 * t47;
+        let t51 = 8.650519031141869 * (0.1156 - t48 * t48);
+        ::overact::guard::reach(t51, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t73 = 0.7071067811865476 * minus_s2_leg3;
-        let t74 = t60 + t62;
-        let t75 = 1.4705882352941178 * t74;
-        let t76 = t73 + t75;
-        let t77 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t76 * t77;
-        let t80 = t75 - t73;
-        let minus_g1_vx_leg3 = t80 * t77;
+        let t53 = 0.7071067811865476 * minus_s2_leg3;
+        let t54 = 1.4705882352941178 * t47;
+        let t55 = t53 + t54;
+        let t56 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t55 * t56;
+        let t59 = t54 - t53;
+        let minus_g1_vx_leg3 = t59 * t56;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t5 * minus_g1_vx_leg3;
-        let t87 = pose[0] + t5 - 0.21213203435596426;
-        let t89 = pose[1] - t3 + 0.21213203435596426;
-        let t90 = t87 + t89;
-        let t98 = 8.650519031141869
-            * (0.5 * (t90 * t90) - (t87 * t87 + t89 * t89 - 0.1156));
-        ::overact::guard::reach(t98, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t98);
+        let t65 = 0.7071067811865476 * t46;
+        let t68 = 8.650519031141869 * (0.1156 - t65 * t65);
+        ::overact::guard::reach(t68, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t68);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t100 = 0.7071067811865476 * minus_s2_leg4;
-        let t101 = t87 - t89;
-        let t102 = 1.4705882352941178 * t101;
-        let t103 = t100 + t102;
-        let t104 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t103 * t104;
-        let t107 = t102 - t100;
-        let minus_g1_vx_leg4 = t107 * t104;
+        let t70 = 0.7071067811865476 * minus_s2_leg4;
+        let t71 = 1.4705882352941178 * t46;
+        let t72 = t70 + t71;
+        let t73 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t72 * t73;
+        let t76 = t71 - t70;
+        let minus_g1_vx_leg4 = t76 * t73;
         let g1_wz_leg4 = t5 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t119 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t88 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t126 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t95 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t126, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t126, 3.440476190476192, "actuators")?;
-        let t127 = 1.0 / t126;
-        let t128 = t119 * t127;
-        let t144 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        ::overact::guard::platform(t95, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t95, 3.440476190476192, "actuators")?;
+        let t96 = 1.0 / t95;
+        let t97 = t88 * t96;
+        let t113 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t146 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t144 * t128;
-        let t154 = t144 * t127;
-        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t115 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t113 * t97;
+        let t123 = t113 * t96;
+        let t125 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t144 * t154;
-        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t156, 3.440476190476192, "actuators")?;
-        let t157 = 1.0 / t156;
-        let t158 = t146 * t157;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t119 * t128
-            - t146 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+            - t113 * t123;
+        ::overact::guard::platform(t125, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t125, 3.440476190476192, "actuators")?;
+        let t126 = 1.0 / t125;
+        let t127 = t115 * t126;
+        let t129 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t88 * t97
+            - t115 * t127;
+        ::overact::guard::platform(t129, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t129, 0.02560000000000001, "actuators")?;
+        let t130 = 1.0 / t129;
+        let t144 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t186 = g1_vy_leg1 * actuator_velocities[0]
+        let t155 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t175 * t154;
-        let t188 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t144 * t123;
+        let t157 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t175 * t128 - t158 * t186;
-        let rate_3_leg1 = t161 * t188;
-        let t190 = t3 * rate_3_leg1;
-        let t191 = rate_3_leg1 * t190;
-        let t193 = t5 * rate_3_leg1;
-        let t194 = rate_3_leg1 * t193;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let t202 = t157 * t186 - t158 * rate_3_leg1;
-        let t205 = t128 * rate_3_leg1 - (t175 * t127 + t154 * t202);
-        let t206 = t205 - t193;
-        let t208 = t202 + t190;
-        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
-        let t211 = rate_2_leg1 * rate_2_leg1;
-        let t212 = 0.34 * t211;
-        let rate_dot_1_leg1 = t24 * (t27 * t191 - t23 * t194 - t212);
-        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t50;
-        let t221 = t202 - t193;
-        let t223 = t205 - t190;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
-        let t226 = rate_2_leg2 * rate_2_leg2;
-        let t227 = 0.34 * t226;
-        let minus_rate_dot_1_leg2 = t50 * (t53 * t194 - t49 * t191 + t227);
-        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t77;
-        let t237 = t205 + t193;
-        let t239 = t202 - t190;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t243 = 0.34 * t242;
-        let minus_rate_dot_1_leg3 = t77 * (t80 * t191 + t76 * t194 + t243);
-        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t104;
-        let t250 = t205 + t190;
-        let t252 = t202 + t193;
-        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
-        let t255 = rate_2_leg4 * rate_2_leg4;
-        let t256 = 0.34 * t255;
-        let minus_rate_dot_1_leg4 = t104 * (t256 - (t107 * t194 + t103 * t191));
-        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
-            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
-        let t282 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
-            + g1_vy_leg4 * t262 + t154 * t271;
-        let t284 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
-            + g1_wz_leg4 * t262 - t128 * t271 - t158 * t282;
-        let rate_dot_3_leg1 = t161 * t284;
-        let t286 = rate_3_leg1 * rate_3_leg1;
-        let t289 = c_phi * t286 + s_phi * rate_dot_3_leg1;
-        let t292 = c_phi * rate_dot_3_leg1 - s_phi * t286;
-        let t295 = t157 * t282 - t158 * rate_dot_3_leg1;
-        let t301 = t128 * rate_dot_3_leg1 - (t127 * t271 + t154 * t295);
-        let t307 = t3 * rate_dot_3_leg1;
-        let t309 = t295 + t307 - t194;
-        let t311 = t5 * rate_dot_3_leg1;
-        let t313 = t301 - t311 - t191;
-        let t316 = t23 * t309 - t27 * t313 - t212;
-        let rate_dot_1_leg1_2 = t24 * t316;
-        let t322 = t301 - t307 + t194;
-        let t325 = t295 - t311 - t191;
-        let t328 = t53 * t322 + t49 * t325 + t227;
-        let minus_rate_dot_1_leg2_2 = t50 * t328;
-        let t334 = t301 + t311 + t191;
-        let t337 = t295 - t307 + t194;
-        let t340 = t80 * t334 + t76 * t337 + t243;
-        let minus_rate_dot_1_leg3_2 = t77 * t340;
-        let t346 = t301 + t307 - t194;
-        let t349 = t295 + t311 + t191;
-        let t352 = t107 * t346 - t103 * t349 + t256;
-        let minus_rate_dot_1_leg4_2 = t104 * t352;
-        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
-        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
-        let t394 = t313 + t309;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * t394 + 0.7071067811865476 * t21 * t211);
-        let t400 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t24 - t4 * t24);
-        let t407 = t322 - t325;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t50
-            * (0.7071067811865476 * t407 - 0.7071067811865476 * t47 * t226);
-        let t413 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t50 - t4 * t50);
-        let t420 = t334 + t337;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t77
-            * (0.7071067811865476 * t420 + 0.7071067811865476 * t74 * t242);
-        let t426 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t77 - t4 * t77);
-        let t433 = t349 - t346;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t104
-            * (0.7071067811865476 * t433 - 0.7071067811865476 * t101 * t255);
-        let t439 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t104 - t4 * t104);
-        let t445 = g2_vx_leg1 * t316;
-        let t446 = 2.079725827019258 * t394;
-        let t454 = 2.079725827019258 * t407;
-        let t456 = minus_g2_vx_leg2 * t328;
-        let t463 = 2.079725827019258 * t420;
-        let t465 = minus_g2_vx_leg3 * t340;
-        let t472 = 2.079725827019258 * t433;
-        let t474 = g2_vx_leg4 * t352;
-        let t481 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t483 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t485 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t487 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t489 = rate_3_leg1 - rate_2_leg1;
-        let t490 = ::overact::math::signed(g2_vx_leg1, t489);
-        let t493 = rate_3_leg1 - rate_2_leg2;
-        let t494 = ::overact::math::signed(minus_g2_vx_leg2, t493);
-        let t497 = minus_rate_2_leg3 + rate_3_leg1;
-        let t498 = ::overact::math::signed(minus_g2_vx_leg3, t497);
-        let t501 = rate_3_leg1 - rate_2_leg4;
-        let t502 = ::overact::math::signed(g2_vx_leg4, t501);
+            + g1_wz_leg4 * actuator_velocities[3] - t144 * t97 - t127 * t155;
+        let rate_3_leg1 = t130 * t157;
+        let t159 = t3 * rate_3_leg1;
+        let t160 = rate_3_leg1 * t159;
+        let t162 = t5 * rate_3_leg1;
+        let t163 = rate_3_leg1 * t162;
+        let g2_vx_leg1 = 2.079725827019258 * t19;
+        let t171 = t126 * t155 - t127 * rate_3_leg1;
+        let t174 = t97 * rate_3_leg1 - (t144 * t96 + t123 * t171);
+        let t175 = t174 - t162;
+        let t176 = t171 + t159;
+        let rate_2_leg1 = g2_vx_leg1 * (t175 + t176);
+        let t179 = rate_2_leg1 * rate_2_leg1;
+        let t180 = 0.34 * t179;
+        let rate_dot_1_leg1 = t19 * (t22 * t160 - t18 * t163 - t180);
+        let t183 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t37;
+        let t189 = t174 + t162;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t176 - t189);
+        let t192 = rate_2_leg2 * rate_2_leg2;
+        let t193 = 0.34 * t192;
+        let minus_rate_dot_1_leg2 = t37 * (t40 * t163 - t36 * t160 + t193);
+        let t196 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t56;
+        let t203 = t174 - t159;
+        let t204 = t171 + t162;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t203 + t204);
+        let t207 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t208 = 0.34 * t207;
+        let minus_rate_dot_1_leg3 = t56 * (t59 * t160 + t55 * t163 + t208);
+        let t211 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t73;
+        let t215 = t171 - t159;
+        let rate_2_leg4 = g2_vx_leg4 * (t175 - t215);
+        let t218 = rate_2_leg4 * rate_2_leg4;
+        let t219 = 0.34 * t218;
+        let minus_rate_dot_1_leg4 = t73 * (t219 - (t76 * t163 + t72 * t160));
+        let t225 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t234 = minus_g1_vx_leg1 * t183 + minus_g1_vx_leg2 * t196
+            + minus_g1_vx_leg3 * t211 + minus_g1_vx_leg4 * t225;
+        let t245 = g1_vy_leg1 * t183 - minus_g1_vy_leg2 * t196 - minus_g1_vy_leg3 * t211
+            + g1_vy_leg4 * t225 + t123 * t234;
+        let t247 = g1_wz_leg1 * t183 + g1_wz_leg2 * t196 + g1_wz_leg3 * t211
+            + g1_wz_leg4 * t225 - t97 * t234 - t127 * t245;
+        let rate_dot_3_leg1 = t130 * t247;
+        let t249 = rate_3_leg1 * rate_3_leg1;
+        let t252 = c_phi * t249 + s_phi * rate_dot_3_leg1;
+        let t255 = s_phi * t249 - c_phi * rate_dot_3_leg1;
+        let t258 = t126 * t245 - t127 * rate_dot_3_leg1;
+        let t264 = t97 * rate_dot_3_leg1 - (t96 * t234 + t123 * t258);
+        let t271 = t160 + t5 * rate_dot_3_leg1;
+        let t272 = t258 - t271;
+        let t273 = t258 + t264;
+        let t274 = t273 - t272;
+        let t275 = t258 + t271;
+        let t278 = t258 - t3 * rate_dot_3_leg1 + t163;
+        let t279 = t274 + t278;
+        let t280 = t279 - t275;
+        let t281 = t280 - t272;
+        let t282 = t274 - t281;
+        let t284 = t273 - t278;
+        let t285 = t275 - t284;
+        let t286 = t278 - t285;
+        let t289 = t18 * t282 - t22 * t286 - t180;
+        let rate_dot_1_leg1_2 = t19 * t289;
+        let t297 = t40 * t280 + t36 * t272 + t193;
+        let minus_rate_dot_1_leg2_2 = t37 * t297;
+        let t305 = t59 * t274 + t55 * t278 + t208;
+        let minus_rate_dot_1_leg3_2 = t56 * t305;
+        let t313 = t76 * t284 - t72 * t275 + t219;
+        let minus_rate_dot_1_leg4_2 = t73 * t313;
+        let rate_1_leg1 = g1_vy_leg1 * t176 - minus_g1_vx_leg1 * t175;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t203
+            + minus_g1_vy_leg2 * (t171 - t162);
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t189 + minus_g1_vy_leg3 * t215;
+        let rate_1_leg4 = g1_vy_leg4 * t204 - minus_g1_vx_leg4 * (t174 + t159);
+        let t357 = t286 + t282;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t19
+            * (0.7071067811865476 * t357 + t11 * t179);
+        let t362 = g2_vx_leg1 * rate_dot_2_leg1;
+        let t363 = t3 - t5;
+        let g2_wz_leg1 = g2_vx_leg1 * t363;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t37
+            * (0.7071067811865476 * t281 - t29 * t192);
+        let t371 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t363;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t56
+            * (0.7071067811865476 * t279 + t48 * t207);
+        let t379 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t363;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t73
+            * (0.7071067811865476 * t285 - t65 * t218);
+        let t387 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t363;
+        let t390 = g2_vx_leg1 * t289;
+        let t391 = 2.079725827019258 * t357;
+        let t399 = 2.079725827019258 * t281;
+        let t401 = minus_g2_vx_leg2 * t297;
+        let t408 = 2.079725827019258 * t279;
+        let t410 = minus_g2_vx_leg3 * t305;
+        let t417 = 2.079725827019258 * t285;
+        let t419 = g2_vx_leg4 * t313;
+        let t426 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t428 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t430 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t432 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t434 = rate_3_leg1 - rate_2_leg1;
+        let t435 = ::overact::math::signed(g2_vx_leg1, t434);
+        let t438 = rate_3_leg1 - rate_2_leg2;
+        let t439 = ::overact::math::signed(minus_g2_vx_leg2, t438);
+        let t442 = minus_rate_2_leg3 + rate_3_leg1;
+        let t443 = ::overact::math::signed(minus_g2_vx_leg3, t442);
+        let t446 = rate_3_leg1 - rate_2_leg4;
+        let t447 = ::overact::math::signed(g2_vx_leg4, t446);
         Ok([
             [
-                0.0, -t289, -t292, t301, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
+                0.0, -t252, t255, t264, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2,
                 minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2, -(minus_g1_vx_leg1 * rate_1_leg1),
@@ -3657,13 +3617,13 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
-                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t400, t413, t426, -t439,
-                t445 - minus_g1_vx_leg1 * t446, minus_g1_vx_leg2 * t454 + t456,
-                minus_g1_vx_leg3 * t463 + t465, minus_g1_vx_leg4 * t472 - t474, t481, -t483, t485,
-                t487, -t490, t494, t498, -t502,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t362, t371, t379, -t387,
+                t390 - minus_g1_vx_leg1 * t391, minus_g1_vx_leg2 * t399 + t401,
+                minus_g1_vx_leg3 * t408 + t410, minus_g1_vx_leg4 * t417 - t419, t426, -t428, t430,
+                t432, -t435, t439, t443, -t447,
             ],
             [
-                0.0, t292, -t289, t295, g1_vy_leg1 * rate_dot_1_leg1_2,
+                0.0, -t255, -t252, t258, g1_vy_leg1 * rate_dot_1_leg1_2,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2,
                 minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2, -(g1_vy_leg4 * minus_rate_dot_1_leg4_2),
                 g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
@@ -3672,12 +3632,12 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
-                -minus_g1_vy_leg3, g1_vy_leg4, t400, -t413, t426, t439, g1_vy_leg1 * t446 + t445,
-                minus_g1_vy_leg2 * t454 - t456, minus_g1_vy_leg3 * t463 + t465,
-                t474 - g1_vy_leg4 * t472, t481, t483, t485, -t487, -t490, -t494, t498, t502,
+                -minus_g1_vy_leg3, g1_vy_leg4, t362, -t371, t379, t387, g1_vy_leg1 * t391 + t390,
+                minus_g1_vy_leg2 * t399 - t401, minus_g1_vy_leg3 * t408 + t410,
+                t419 - g1_vy_leg4 * t417, t426, t428, t430, -t432, -t435, -t439, t443, t447,
             ],
             [
-                rate_dot_3_leg1, c_phi * t295 - s_phi * t301, -(c_phi * t301 + s_phi * t295), 0.0,
+                rate_dot_3_leg1, c_phi * t258 - s_phi * t264, -(s_phi * t258 + c_phi * t264), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1_2, -(g1_wz_leg2 * minus_rate_dot_1_leg2_2),
                 -(g1_wz_leg3 * minus_rate_dot_1_leg3_2), -(g1_wz_leg4 * minus_rate_dot_1_leg4_2),
                 g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3688,17 +3648,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t446 + g2_wz_leg1 * t316,
-                -(g1_wz_leg2 * t454 + g2_wz_leg2 * t328), -(g1_wz_leg3 * t463 + g2_wz_leg3 * t340),
-                -(g1_wz_leg4 * t472 + g2_wz_leg4 * t352),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t391 + g2_wz_leg1 * t289,
+                -(g1_wz_leg2 * t399 + g2_wz_leg2 * t297), -(g1_wz_leg3 * t408 + g2_wz_leg3 * t305),
+                -(g1_wz_leg4 * t417 + g2_wz_leg4 * t313),
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t489),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t493),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t497),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t501),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t434),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t438),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t442),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t446),
             ],
         ])
     }
@@ -3712,7 +3672,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 461 operations (184 additions, 272 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 416 intermediates.
+    /// 454 operations (177 additions, 272 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 409 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3724,240 +3684,244 @@ impl Planar4Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = s_phi + c_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[0] - t3 + 0.21213203435596426;
-        let t6 = c_phi - s_phi;
-        let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t10 = t5 + t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t18, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t18);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = pose[0] + t3 - 0.21213203435596426;
+        let t8 = c_phi - s_phi;
+        let t9 = 0.05656854249492381 * t8;
+        let t11 = pose[1] - t9 + 0.21213203435596426;
+        let t12 = t7 + t11;
+        let t13 = t12 - t5;
+        let t15 = pose[0] + t9 - 0.21213203435596426;
+        let t16 = t7 - t11;
+        let t17 = t15 - t16;
+        let t18 = t13 + t17;
+        let t19 = t18 - t11;
+        let t20 = t13 - t17;
+        let t21 = t7 - t20;
+        let t22 = t19 + t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t30, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg2;
-        let t21 = t9 - t5;
-        let t22 = 1.4705882352941178 * t21;
-        let t23 = t20 - t22;
-        let t24 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t23 * t24;
-        let t27 = pose[0] - t7 + 0.21213203435596426;
-        let t29 = pose[1] - t3 + 0.21213203435596426;
-        let t30 = t27 - t29;
-        let t38 = 8.650519031141869
-            * (0.5 * (t30 * t30) - (t27 * t27 + t29 * t29 - 0.1156));
-        ::overact::guard::reach(t38, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t38);
+        let t32 = 0.7071067811865476 * minus_s2_leg2;
+        let t33 = t21 - t19;
+        let t34 = 1.4705882352941178 * t33;
+        let t35 = t32 - t34;
+        let t36 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t35 * t36;
+        let t45 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t45, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t45);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t40 = 0.7071067811865476 * minus_s2_leg3;
-        let t41 = t27 + t29;
-        let t42 = 1.4705882352941178 * t41;
-        let t43 = t40 + t42;
-        let t44 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t43 * t44;
-        let t47 = t20 + t22;
-        let minus_g1_vy_leg2 = t47 * t24;
-        let t49 = t42 - t40;
-        let minus_g1_vx_leg3 = t49 * t44;
-        let t54 = pose[1] + t3 - 0.21213203435596426;
-        let t56 = pose[0] + t7 - 0.21213203435596426;
-        let t57 = t54 - t56;
-        let t65 = 8.650519031141869
-            * (0.5 * (t57 * t57) - (t56 * t56 + t54 * t54 - 0.1156));
-        ::overact::guard::reach(t65, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t65);
+        let t47 = 0.7071067811865476 * minus_s2_leg3;
+        let t48 = 1.4705882352941178 * t18;
+        let t49 = t47 + t48;
+        let t50 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t49 * t50;
+        let t53 = t32 + t34;
+        let minus_g1_vy_leg2 = t53 * t36;
+        let t55 = t48 - t47;
+        let minus_g1_vx_leg3 = t55 * t50;
+        let t59 = t5 - t15;
+        let t67 = 8.650519031141869
+            * (0.5 * (t59 * t59) - (t15 * t15 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t67, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t67 = 0.7071067811865476 * minus_s2_leg1;
-        let t68 = t56 + t54;
-        let t69 = 1.4705882352941178 * t68;
-        let t70 = t67 - t69;
-        let t71 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t70 * t71;
-        let t74 = t69 + t67;
-        let minus_g1_vx_leg1 = t74 * t71;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t83 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t87 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let t95 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t97 = minus_g1_vx_leg2 * t83 + minus_g1_vy_leg2 * t87 - g1_wz_leg2 * t95;
-        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
-        let t98 = 1.0 / t97;
-        let t99 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
-            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t98;
-        let t101 = t95 * t98;
-        let t106 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
-            * t98;
-        let t110 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t115 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t98;
-        let t116 = twist[2] * twist[2];
-        let t119 = c_phi * t116 + s_phi * acceleration[2];
-        let t124 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3) * t98;
-        let t127 = c_phi * acceleration[2] - s_phi * t116;
-        let t131 = t83 * t98;
-        let t133 = t87 * t98;
-        let t141 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t98;
-        let t146 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t98;
-        let t156 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t178 = t7 * acceleration[2];
-        let t180 = t3 * twist[2];
-        let t181 = twist[2] * t180;
-        let t182 = acceleration[1] + t178 - t181;
-        let t184 = t3 * acceleration[2];
-        let t186 = t7 * twist[2];
-        let t187 = twist[2] * t186;
-        let t188 = acceleration[0] - t184 - t187;
-        let g2_vx_leg1 = 2.079725827019258 * t71;
-        let t192 = twist[0] - t180;
-        let t194 = twist[1] + t186;
-        let rate_2_leg1 = g2_vx_leg1 * t192 + g2_vx_leg1 * t194;
-        let t197 = rate_2_leg1 * rate_2_leg1;
-        let t199 = t70 * t182 - t74 * t188 - 0.34 * t197;
-        let rate_dot_1_leg1 = t71 * t199;
-        let t202 = acceleration[0] - t178 + t181;
-        let t205 = acceleration[1] - t184 - t187;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t24;
-        let t209 = twist[1] - t180;
-        let t211 = twist[0] - t186;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t209 - minus_g2_vx_leg2 * t211;
-        let t214 = rate_2_leg2 * rate_2_leg2;
-        let t216 = t23 * t202 + t47 * t205 + 0.34 * t214;
-        let minus_rate_dot_1_leg2 = t24 * t216;
-        let t219 = acceleration[0] + t184 + t187;
-        let t222 = acceleration[1] - t178 + t181;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t44;
-        let t226 = twist[0] + t180;
-        let t228 = twist[1] - t186;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t226 + minus_g2_vx_leg3 * t228;
-        let t231 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t233 = t49 * t219 + t43 * t222 + 0.34 * t231;
-        let minus_rate_dot_1_leg3 = t44 * t233;
-        let t236 = pose[0] + t3 - 0.21213203435596426;
-        let t238 = pose[1] - t7 + 0.21213203435596426;
-        let t239 = t236 + t238;
-        let t247 = 8.650519031141869
-            * (0.5 * (t239 * t239) - (t236 * t236 + t238 * t238 - 0.1156));
-        ::overact::guard::reach(t247, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t247);
+        let t69 = 0.7071067811865476 * minus_s2_leg1;
+        let t70 = t15 + t5;
+        let t71 = 1.4705882352941178 * t70;
+        let t72 = t69 - t71;
+        let t73 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t72 * t73;
+        let t76 = t71 + t69;
+        let minus_g1_vx_leg1 = t76 * t73;
+        let g1_wz_leg1 = t9 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t85 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t89 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
+        let t97 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t99 = minus_g1_vx_leg2 * t85 + minus_g1_vy_leg2 * t89 - g1_wz_leg2 * t97;
+        ::overact::guard::platform(t99, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.2752380952380954, "kept actuators")?;
+        let t100 = 1.0 / t99;
+        let t101 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t100;
+        let t103 = t97 * t100;
+        let t108 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t100;
+        let t113 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t100;
+        let t114 = twist[2] * twist[2];
+        let t117 = s_phi * t114 - c_phi * acceleration[2];
+        let t122 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t100;
+        let t125 = c_phi * t114 + s_phi * acceleration[2];
+        let t130 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t133 = t85 * t100;
+        let t135 = t89 * t100;
+        let t144 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t100;
+        let t149 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t100;
+        let t158 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t180 = t9 * acceleration[2];
+        let t182 = t3 * twist[2];
+        let t183 = twist[2] * t182;
+        let t184 = acceleration[0] - t180 + t183;
+        let t185 = t3 * acceleration[2];
+        let t187 = t9 * twist[2];
+        let t188 = twist[2] * t187;
+        let t189 = acceleration[1] - t185 - t188;
+        let t190 = t184 - t189;
+        let t192 = acceleration[0] + t185 + t188;
+        let t193 = t192 - t190;
+        let t196 = acceleration[1] - t180 + t183;
+        let t197 = t192 + t196;
+        let t198 = t197 - t184;
+        let t200 = acceleration[0] + t180 - t183;
+        let t201 = t198 - t200;
+        let t202 = t196 - t201;
+        let g2_vx_leg1 = 2.079725827019258 * t73;
+        let t206 = twist[0] - t182;
+        let t208 = twist[1] + t187;
+        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
+        let t211 = rate_2_leg1 * rate_2_leg1;
+        let t213 = t72 * t193 - t76 * t202 - 0.34 * t211;
+        let rate_dot_1_leg1 = t73 * t213;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t36;
+        let t219 = twist[1] - t182;
+        let t221 = twist[0] - t187;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t219 - minus_g2_vx_leg2 * t221;
+        let t224 = rate_2_leg2 * rate_2_leg2;
+        let t226 = t35 * t184 + t53 * t189 + 0.34 * t224;
+        let minus_rate_dot_1_leg2 = t36 * t226;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t50;
+        let t232 = twist[0] + t182;
+        let t234 = twist[1] - t187;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t232 + minus_g2_vx_leg3 * t234;
+        let t237 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t239 = t55 * t192 + t49 * t196 + 0.34 * t237;
+        let minus_rate_dot_1_leg3 = t50 * t239;
+        let t248 = 8.650519031141869
+            * (0.5 * (t12 * t12) - (t7 * t7 + t11 * t11 - 0.1156));
+        ::overact::guard::reach(t248, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t248);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t249 = 0.7071067811865476 * minus_s2_leg4;
-        let t250 = t236 - t238;
-        let t251 = 1.4705882352941178 * t250;
-        let t252 = t249 + t251;
+        let t250 = 0.7071067811865476 * minus_s2_leg4;
+        let t251 = 1.4705882352941178 * t16;
+        let t252 = t250 + t251;
         let t253 = 1.0 / minus_s2_leg4;
         let g1_vy_leg4 = t252 * t253;
-        let t256 = t251 - t249;
+        let t256 = t251 - t250;
         let minus_g1_vx_leg4 = t256 * t253;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t264 = g1_wz_leg4 * t99 - (minus_g1_vx_leg4 * t115 + g1_vy_leg4 * t124);
-        let t266 = acceleration[0] + t178 - t181;
-        let t269 = acceleration[1] + t184 + t187;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t9 * minus_g1_vx_leg4;
+        let t264 = g1_wz_leg4 * t101 - (minus_g1_vx_leg4 * t122 + g1_vy_leg4 * t113);
         let g2_vx_leg4 = 2.079725827019258 * t253;
-        let t273 = twist[0] + t186;
-        let t275 = twist[1] + t180;
-        let rate_2_leg4 = g2_vx_leg4 * t273 - g2_vx_leg4 * t275;
-        let t278 = rate_2_leg4 * rate_2_leg4;
-        let t280 = t256 * t266 - t252 * t269 + 0.34 * t278;
-        let minus_rate_dot_1_leg4 = t253 * t280;
-        let t287 = minus_g1_vx_leg4 * t131 - g1_vy_leg4 * t133 - g1_wz_leg4 * t101;
-        let t293 = g1_vy_leg4 * t141 - minus_g1_vx_leg4 * t146 + g1_wz_leg4 * t106;
-        let rate_1_leg1 = g1_vy_leg1 * t194 - minus_g1_vx_leg1 * t192;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t211 + minus_g1_vy_leg2 * t209;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t226 + minus_g1_vy_leg3 * t228;
-        let rate_1_leg4 = g1_vy_leg4 * t275 - minus_g1_vx_leg4 * t273;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t71 - t2 * t71);
-        let t324 = g2_vx_leg1 * t115 - g2_vx_leg1 * t124 + g2_wz_leg1 * t99;
-        let t326 = t188 + t182;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t71
-            * (0.7071067811865476 * t326 + 0.7071067811865476 * t68 * t197);
-        let t337 = g2_vx_leg1 * t131 + g2_vx_leg1 * t133 + g2_wz_leg1 * t101;
-        let t343 = g2_vx_leg1 * t146 + g2_vx_leg1 * t141 + g2_wz_leg1 * t106;
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
-        let t353 = g2_wz_leg2 * t99
-            - (minus_g2_vx_leg2 * t115 + minus_g2_vx_leg2 * t124);
-        let t355 = t202 - t205;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * t355 - 0.7071067811865476 * t21 * t214);
-        let t366 = minus_g2_vx_leg2 * t131 - minus_g2_vx_leg2 * t133 - g2_wz_leg2 * t101;
-        let t372 = minus_g2_vx_leg2 * t141 - minus_g2_vx_leg2 * t146 + g2_wz_leg2 * t106;
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t44 - t2 * t44);
-        let t382 = minus_g2_vx_leg3 * t124 - minus_g2_vx_leg3 * t115 + g2_wz_leg3 * t99;
-        let t384 = t219 + t222;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t44
-            * (0.7071067811865476 * t384 + 0.7071067811865476 * t41 * t231);
-        let t395 = minus_g2_vx_leg3 * t131 + minus_g2_vx_leg3 * t133 - g2_wz_leg3 * t101;
-        let t401 = g2_wz_leg3 * t106
-            - (minus_g2_vx_leg3 * t146 + minus_g2_vx_leg3 * t141);
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t253 - t2 * t253);
-        let t411 = g2_vx_leg4 * t115 + g2_vx_leg4 * t124 + g2_wz_leg4 * t99;
-        let t413 = t269 - t266;
+        let t269 = twist[0] + t187;
+        let t271 = twist[1] + t182;
+        let rate_2_leg4 = g2_vx_leg4 * t269 - g2_vx_leg4 * t271;
+        let t274 = rate_2_leg4 * rate_2_leg4;
+        let t276 = t256 * t200 - t252 * t198 + 0.34 * t274;
+        let minus_rate_dot_1_leg4 = t253 * t276;
+        let t283 = minus_g1_vx_leg4 * t133 - g1_vy_leg4 * t135 - g1_wz_leg4 * t103;
+        let t289 = g1_vy_leg4 * t149 - minus_g1_vx_leg4 * t144 + g1_wz_leg4 * t108;
+        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t221 + minus_g1_vy_leg2 * t219;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t232 + minus_g1_vy_leg3 * t234;
+        let rate_1_leg4 = g1_vy_leg4 * t271 - minus_g1_vx_leg4 * t269;
+        let g2_wz_leg1 = 0.11764705882352941 * (t8 * t73 - t2 * t73);
+        let t320 = g2_vx_leg1 * t122 - g2_vx_leg1 * t113 + g2_wz_leg1 * t101;
+        let t322 = t202 + t193;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t73
+            * (0.7071067811865476 * t322 + 0.7071067811865476 * t70 * t211);
+        let t333 = g2_vx_leg1 * t133 + g2_vx_leg1 * t135 + g2_wz_leg1 * t103;
+        let t339 = g2_vx_leg1 * t144 + g2_vx_leg1 * t149 + g2_wz_leg1 * t108;
+        let g2_wz_leg2 = 0.11764705882352941 * (t8 * t36 - t2 * t36);
+        let t349 = g2_wz_leg2 * t101
+            - (minus_g2_vx_leg2 * t122 + minus_g2_vx_leg2 * t113);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t36
+            * (0.7071067811865476 * t190 - 0.7071067811865476 * t33 * t224);
+        let t361 = minus_g2_vx_leg2 * t133 - minus_g2_vx_leg2 * t135 - g2_wz_leg2 * t103;
+        let t367 = minus_g2_vx_leg2 * t149 - minus_g2_vx_leg2 * t144 + g2_wz_leg2 * t108;
+        let g2_wz_leg3 = 0.11764705882352941 * (t8 * t50 - t2 * t50);
+        let t377 = minus_g2_vx_leg3 * t113 - minus_g2_vx_leg3 * t122 + g2_wz_leg3 * t101;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t50
+            * (0.7071067811865476 * t197 + 0.7071067811865476 * t18 * t237);
+        let t389 = minus_g2_vx_leg3 * t133 + minus_g2_vx_leg3 * t135 - g2_wz_leg3 * t103;
+        let t395 = g2_wz_leg3 * t108
+            - (minus_g2_vx_leg3 * t144 + minus_g2_vx_leg3 * t149);
+        let g2_wz_leg4 = 0.11764705882352941 * (t8 * t253 - t2 * t253);
+        let t405 = g2_vx_leg4 * t122 + g2_vx_leg4 * t113 + g2_wz_leg4 * t101;
         let minus_rate_dot_2_leg4 = 2.9411764705882355 * t253
-            * (0.7071067811865476 * t413 - 0.7071067811865476 * t250 * t278);
-        let t424 = g2_vx_leg4 * t133 - g2_vx_leg4 * t131 - g2_wz_leg4 * t101;
-        let t430 = g2_vx_leg4 * t146 - g2_vx_leg4 * t141 + g2_wz_leg4 * t106;
-        let t447 = 2.079725827019258 * t413;
-        let t470 = twist[2] - rate_2_leg1;
-        let t477 = twist[2] - rate_2_leg2;
-        let t484 = minus_rate_2_leg3 + twist[2];
-        let t491 = twist[2] - rate_2_leg4;
+            * (0.7071067811865476 * t201 - 0.7071067811865476 * t16 * t274);
+        let t417 = g2_vx_leg4 * t135 - g2_vx_leg4 * t133 - g2_wz_leg4 * t103;
+        let t423 = g2_vx_leg4 * t144 - g2_vx_leg4 * t149 + g2_wz_leg4 * t108;
+        let t440 = 2.079725827019258 * t201;
+        let t463 = twist[2] - rate_2_leg1;
+        let t470 = twist[2] - rate_2_leg2;
+        let t477 = minus_rate_2_leg3 + twist[2];
+        let t484 = twist[2] - rate_2_leg4;
         Ok([
             [
-                t99 * acceleration[2], t99 * t110 - (t115 * t119 + t124 * t127),
-                t124 * t119 - t115 * t127 - t99 * t156,
-                t115 * acceleration[0] - t124 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
+                t101 * acceleration[2], t113 * t117 - t122 * t125 + t101 * t130,
+                t122 * t117 + t113 * t125 - t101 * t158,
+                t122 * acceleration[0] - t113 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
                 -(t264 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0, t264 * rate_1_leg4,
                 ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
                 ::overact::math::signed(t264, rate_1_leg4), 1.0, 0.0, 0.0, t264,
-                t324 * rate_dot_2_leg1, -(t353 * minus_rate_dot_2_leg2),
-                -(t382 * minus_rate_dot_2_leg3), -(t411 * minus_rate_dot_2_leg4),
-                2.079725827019258 * t326 + t324 * t199, -(t353 * t216), -(t382 * t233),
-                -(t264 * t447 + t411 * t280), ::overact::math::signed(t324, rate_2_leg1),
-                ::overact::math::signed(t353, rate_2_leg2),
-                -::overact::math::signed(t382, minus_rate_2_leg3),
-                ::overact::math::signed(t411, rate_2_leg4),
-                ::overact::math::signed(t99 - t324, t470),
-                ::overact::math::signed(t99 - t353, t477),
-                ::overact::math::signed(t99 - t382, t484),
-                ::overact::math::signed(t99 - t411, t491),
+                t320 * rate_dot_2_leg1, -(t349 * minus_rate_dot_2_leg2),
+                -(t377 * minus_rate_dot_2_leg3), -(t405 * minus_rate_dot_2_leg4),
+                2.079725827019258 * t322 + t320 * t213, -(t349 * t226), -(t377 * t239),
+                -(t264 * t440 + t405 * t276), ::overact::math::signed(t320, rate_2_leg1),
+                ::overact::math::signed(t349, rate_2_leg2),
+                -::overact::math::signed(t377, minus_rate_2_leg3),
+                ::overact::math::signed(t405, rate_2_leg4),
+                ::overact::math::signed(t101 - t320, t463),
+                ::overact::math::signed(t101 - t349, t470),
+                ::overact::math::signed(t101 - t377, t477),
+                ::overact::math::signed(t101 - t405, t484),
             ],
             [
-                -(t101 * acceleration[2]), t131 * t119 - t133 * t127 - t101 * t110,
-                t131 * t127 + t133 * t119 + t101 * t156,
-                -(t131 * acceleration[0] + t133 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
-                0.0, -(t287 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
-                t287 * rate_1_leg4, 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                ::overact::math::signed(t287, rate_1_leg4), 0.0, 1.0, 0.0, t287,
-                -(t337 * rate_dot_2_leg1), -(t366 * minus_rate_dot_2_leg2),
-                -(t395 * minus_rate_dot_2_leg3), -(t424 * minus_rate_dot_2_leg4), -(t337 * t199),
-                -(2.079725827019258 * t355 + t366 * t216), -(t395 * t233),
-                -(t287 * t447 + t424 * t280), -::overact::math::signed(t337, rate_2_leg1),
-                ::overact::math::signed(t366, rate_2_leg2),
-                -::overact::math::signed(t395, minus_rate_2_leg3),
-                ::overact::math::signed(t424, rate_2_leg4),
-                ::overact::math::signed(t337 - t101, t470),
-                -::overact::math::signed(t366 + t101, t477),
-                -::overact::math::signed(t395 + t101, t484),
-                -::overact::math::signed(t424 + t101, t491),
+                -(t103 * acceleration[2]), t133 * t125 + t135 * t117 - t103 * t130,
+                t135 * t125 - t133 * t117 + t103 * t158,
+                -(t133 * acceleration[0] + t135 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
+                0.0, -(t283 * minus_rate_dot_1_leg4), 0.0, -minus_rate_1_leg2, 0.0,
+                t283 * rate_1_leg4, 0.0, -::overact::math::sign(minus_rate_1_leg2), 0.0,
+                ::overact::math::signed(t283, rate_1_leg4), 0.0, 1.0, 0.0, t283,
+                -(t333 * rate_dot_2_leg1), -(t361 * minus_rate_dot_2_leg2),
+                -(t389 * minus_rate_dot_2_leg3), -(t417 * minus_rate_dot_2_leg4), -(t333 * t213),
+                -(2.079725827019258 * t190 + t361 * t226), -(t389 * t239),
+                -(t283 * t440 + t417 * t276), -::overact::math::signed(t333, rate_2_leg1),
+                ::overact::math::signed(t361, rate_2_leg2),
+                -::overact::math::signed(t389, minus_rate_2_leg3),
+                ::overact::math::signed(t417, rate_2_leg4),
+                ::overact::math::signed(t333 - t103, t463),
+                -::overact::math::signed(t361 + t103, t470),
+                -::overact::math::signed(t389 + t103, t477),
+                -::overact::math::signed(t417 + t103, t484),
             ],
             [
-                t106 * acceleration[2], t141 * t127 - t146 * t119 + t106 * t110,
-                -(t146 * t127 + t141 * t119 + t106 * t156),
-                t146 * acceleration[0] + t141 * acceleration[1], 0.0, 0.0, -minus_rate_dot_1_leg3,
-                -(t293 * minus_rate_dot_1_leg4), 0.0, 0.0, -minus_rate_1_leg3, t293 * rate_1_leg4,
+                t108 * acceleration[2], t108 * t130 - (t144 * t125 + t149 * t117),
+                t144 * t117 - t149 * t125 - t108 * t158,
+                t144 * acceleration[0] + t149 * acceleration[1], 0.0, 0.0, -minus_rate_dot_1_leg3,
+                -(t289 * minus_rate_dot_1_leg4), 0.0, 0.0, -minus_rate_1_leg3, t289 * rate_1_leg4,
                 0.0, 0.0, -::overact::math::sign(minus_rate_1_leg3),
-                ::overact::math::signed(t293, rate_1_leg4), 0.0, 0.0, 1.0, t293,
-                t343 * rate_dot_2_leg1, -(t372 * minus_rate_dot_2_leg2),
-                -(t401 * minus_rate_dot_2_leg3), -(t430 * minus_rate_dot_2_leg4), t343 * t199,
-                -(t372 * t216), -(2.079725827019258 * t384 + t401 * t233),
-                -(t293 * t447 + t430 * t280), ::overact::math::signed(t343, rate_2_leg1),
-                ::overact::math::signed(t372, rate_2_leg2),
-                -::overact::math::signed(t401, minus_rate_2_leg3),
-                ::overact::math::signed(t430, rate_2_leg4),
-                ::overact::math::signed(t106 - t343, t470),
-                ::overact::math::signed(t106 - t372, t477),
-                ::overact::math::signed(t106 - t401, t484),
-                ::overact::math::signed(t106 - t430, t491),
+                ::overact::math::signed(t289, rate_1_leg4), 0.0, 0.0, 1.0, t289,
+                t339 * rate_dot_2_leg1, -(t367 * minus_rate_dot_2_leg2),
+                -(t395 * minus_rate_dot_2_leg3), -(t423 * minus_rate_dot_2_leg4), t339 * t213,
+                -(t367 * t226), -(2.079725827019258 * t197 + t395 * t239),
+                -(t289 * t440 + t423 * t276), ::overact::math::signed(t339, rate_2_leg1),
+                ::overact::math::signed(t367, rate_2_leg2),
+                -::overact::math::signed(t395, minus_rate_2_leg3),
+                ::overact::math::signed(t423, rate_2_leg4),
+                ::overact::math::signed(t108 - t339, t463),
+                ::overact::math::signed(t108 - t367, t470),
+                ::overact::math::signed(t108 - t395, t477),
+                ::overact::math::signed(t108 - t423, t484),
             ],
         ])
     }
@@ -3972,7 +3936,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 409 operations (150 additions, 254 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 368 intermediates.
+    /// 404 operations (147 additions, 252 multiplications, 5 divisions), 0 square roots, 5 trigonometric pairs, 30 signs, 363 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4027,164 +3991,161 @@ impl Planar4Prr {
             * t56;
         let t59 = t53 * t56;
         let t64 = (g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2) * t56;
-        let t69 = (minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t56;
-        let t71 = twist[2] * twist[2];
-        let t73 = c_phi * acceleration[2] - s_phi * t71;
-        let t78 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t56;
-        let t81 = c_phi * t71 + s_phi * acceleration[2];
-        let t86 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t68 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t73 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t56;
+        let t74 = twist[2] * twist[2];
+        let t77 = c_phi * t74 + s_phi * acceleration[2];
+        let t82 = (minus_g1_vx_leg2 * g1_wz_leg3 + g1_wz_leg2 * g1_vx_leg3) * t56;
+        let t85 = s_phi * t74 - c_phi * acceleration[2];
         let t89 = t41 * t56;
         let t91 = t45 * t56;
-        let t99 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t56;
-        let t104 = (g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t56;
-        let t114 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t136 = t33 * acceleration[2];
-        let t138 = t28 * twist[2];
+        let t99 = (g1_wz_leg1 * minus_g1_vx_leg2 + g1_vx_leg1 * g1_wz_leg2) * t56;
+        let t104 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t56;
+        let t114 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t136 = t28 * acceleration[2];
+        let t138 = t33 * twist[2];
         let t139 = twist[2] * t138;
-        let t141 = 0.2404163056034262 * t30;
+        let t140 = acceleration[1] - t136 + t139;
+        let t142 = acceleration[0] - t136 + t139;
+        let t143 = t33 * acceleration[2];
+        let t145 = t28 * twist[2];
+        let t146 = twist[2] * t145;
+        let t147 = acceleration[0] + t143 + t146;
+        let t148 = t147 + t140;
+        let t149 = t148 - t142;
+        let t151 = acceleration[0] + t136 - t139;
+        let t152 = t149 - t151;
         let minus_g2_vx_leg1 = 2.079725827019258 * t22;
-        let t143 = t33 * twist[2];
-        let t144 = twist[0] - t143;
-        let t146 = twist[1] + t138;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t144 + minus_g2_vx_leg1 * t146;
-        let t149 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t151 = acceleration[0] - t136 - t139 + t141 * t149;
-        let t153 = t28 * acceleration[2];
-        let t155 = twist[2] * t143;
-        let t157 = 0.2404163056034262 * t21;
-        let t159 = acceleration[1] + t153 - t155 + t157 * t149;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t151 + g1_vy_leg1 * t159;
-        let t164 = t30 * t141 + t21 * t157;
+        let t156 = twist[0] - t138;
+        let t158 = twist[1] + t145;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t156 + minus_g2_vx_leg1 * t158;
+        let t161 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t163 = t140 - t152 + 0.2404163056034262 * t30 * t161;
+        let t166 = acceleration[1] - t143 - t146;
+        let t167 = t142 - t166;
+        let t171 = t147 - t167 + 0.2404163056034262 * t21 * t161;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t163 + g1_vy_leg1 * t171;
+        let t174 = 0.2404163056034262 + 0.2404163056034262;
         let g2_vx_leg2 = 2.079725827019258 * t3;
-        let t166 = twist[0] - t138;
-        let t168 = twist[1] - t143;
-        let rate_2_leg2 = g2_vx_leg2 * t166 - g2_vx_leg2 * t168;
-        let t171 = rate_2_leg2 * rate_2_leg2;
-        let t174 = acceleration[0] - t153 + t155;
-        let t177 = acceleration[1] - t136 - t139;
-        let rate_dot_1_leg2 = t4 * (t164 * t171 - (t2 * t174 + t13 * t177));
-        let t183 = acceleration[1] - t153 + t155;
-        let t186 = acceleration[0] + t136 + t139;
+        let t176 = twist[0] - t145;
+        let t178 = twist[1] - t138;
+        let rate_2_leg2 = g2_vx_leg2 * t176 - g2_vx_leg2 * t178;
+        let t181 = rate_2_leg2 * rate_2_leg2;
+        let rate_dot_1_leg2 = t4 * (t174 * t181 - (t2 * t142 + t13 * t166));
         let g2_vx_leg3 = 2.079725827019258 * t9;
-        let t190 = twist[0] + t143;
-        let t192 = twist[1] - t138;
-        let rate_2_leg3 = g2_vx_leg3 * t190 + g2_vx_leg3 * t192;
-        let t195 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t10 * (t8 * t183 - t15 * t186 - t164 * t195);
-        let t201 = c2_leg4 + s2_leg4;
-        let t202 = 1.0 / s2_leg4;
-        let t203 = 0.7071067811865476 * t202;
-        let g1_vx_leg4 = t201 * t203;
-        let t206 = c2_leg4 - s2_leg4;
-        let minus_g1_vy_leg4 = t206 * t203;
+        let t192 = twist[0] + t138;
+        let t194 = twist[1] - t145;
+        let rate_2_leg3 = g2_vx_leg3 * t192 + g2_vx_leg3 * t194;
+        let t197 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t10 * (t8 * t140 - t15 * t147 - t174 * t197);
+        let t203 = c2_leg4 + s2_leg4;
+        let t204 = 1.0 / s2_leg4;
+        let t205 = 0.7071067811865476 * t204;
+        let g1_vx_leg4 = t203 * t205;
+        let t208 = c2_leg4 - s2_leg4;
+        let minus_g1_vy_leg4 = t208 * t205;
         let g1_wz_leg4 = t28 * g1_vx_leg4 - t33 * minus_g1_vy_leg4;
-        let t214 = g1_vx_leg4 * t78 - minus_g1_vy_leg4 * t69 + g1_wz_leg4 * t57;
-        let t216 = acceleration[0] + t153 - t155;
-        let t219 = acceleration[1] + t136 + t139;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t202;
-        let t223 = twist[1] + t143;
-        let t225 = twist[0] + t138;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t223 - minus_g2_vx_leg4 * t225;
-        let t228 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = t203 * (t201 * t216 - t206 * t219 + t164 * t228);
-        let t237 = minus_g1_vy_leg4 * t91 - g1_vx_leg4 * t89 + g1_wz_leg4 * t59;
-        let t243 = g1_vx_leg4 * t99 + minus_g1_vy_leg4 * t104 - g1_wz_leg4 * t64;
-        let rate_1_leg1 = g1_vx_leg1 * t144 + g1_vy_leg1 * t146;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t166 + minus_g1_vy_leg2 * t168;
-        let rate_1_leg3 = g1_vx_leg3 * t190 - minus_g1_vy_leg3 * t192;
-        let rate_1_leg4 = g1_vx_leg4 * t225 - minus_g1_vy_leg4 * t223;
+        let t216 = g1_vx_leg4 * t73 - minus_g1_vy_leg4 * t82 + g1_wz_leg4 * t57;
+        let minus_g2_vx_leg4 = 2.079725827019258 * t204;
+        let t221 = twist[1] + t138;
+        let t223 = twist[0] + t145;
+        let rate_2_leg4 = minus_g2_vx_leg4 * t221 - minus_g2_vx_leg4 * t223;
+        let t226 = rate_2_leg4 * rate_2_leg4;
+        let rate_dot_1_leg4 = t205 * (t203 * t151 - t208 * t149 + t174 * t226);
+        let t235 = minus_g1_vy_leg4 * t91 - g1_vx_leg4 * t89 + g1_wz_leg4 * t59;
+        let t241 = g1_vx_leg4 * t104 + minus_g1_vy_leg4 * t99 - g1_wz_leg4 * t64;
+        let rate_1_leg1 = g1_vx_leg1 * t156 + g1_vy_leg1 * t158;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t178;
+        let rate_1_leg3 = g1_vx_leg3 * t192 - minus_g1_vy_leg3 * t194;
+        let rate_1_leg4 = g1_vx_leg4 * t223 - minus_g1_vy_leg4 * t221;
         let g2_wz_leg1 = 0.11764705882352941 * (t22 * t32 - t22 * t27);
-        let t274 = g2_wz_leg1 * t57 - (minus_g2_vx_leg1 * t78 + minus_g2_vx_leg1 * t69);
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t151 + minus_g2_vx_leg1 * t159;
-        let t283 = minus_g2_vx_leg1 * t89 + minus_g2_vx_leg1 * t91 + g2_wz_leg1 * t59;
-        let t289 = minus_g2_vx_leg1 * t104 - minus_g2_vx_leg1 * t99 - g2_wz_leg1 * t64;
+        let t272 = g2_wz_leg1 * t57 - (minus_g2_vx_leg1 * t73 + minus_g2_vx_leg1 * t82);
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t163 + minus_g2_vx_leg1 * t171;
+        let t281 = minus_g2_vx_leg1 * t89 + minus_g2_vx_leg1 * t91 + g2_wz_leg1 * t59;
+        let t287 = minus_g2_vx_leg1 * t99 - minus_g2_vx_leg1 * t104 - g2_wz_leg1 * t64;
         let g2_wz_leg2 = 0.11764705882352941 * (t32 * t3 - t27 * t3);
-        let t299 = g2_vx_leg2 * t78 - g2_vx_leg2 * t69 + g2_wz_leg2 * t57;
-        let t301 = t174 - t177;
+        let t297 = g2_vx_leg2 * t73 - g2_vx_leg2 * t82 + g2_wz_leg2 * t57;
         let rate_dot_2_leg2 = 2.9411764705882355 * t3
-            * (0.7071067811865476 * t301 - t171 * (0.34 * c2_leg2));
-        let t312 = g2_vx_leg2 * t91 - g2_vx_leg2 * t89 + g2_wz_leg2 * t59;
-        let t318 = g2_vx_leg2 * t99 + g2_vx_leg2 * t104 - g2_wz_leg2 * t64;
+            * (0.7071067811865476 * t167 - t181 * (0.34 * c2_leg2));
+        let t309 = g2_vx_leg2 * t91 - g2_vx_leg2 * t89 + g2_wz_leg2 * t59;
+        let t315 = g2_vx_leg2 * t104 + g2_vx_leg2 * t99 - g2_wz_leg2 * t64;
         let g2_wz_leg3 = 0.11764705882352941 * (t32 * t9 - t27 * t9);
-        let t328 = g2_vx_leg3 * t78 + g2_vx_leg3 * t69 + g2_wz_leg3 * t57;
-        let t332 = t186 + t183;
+        let t325 = g2_vx_leg3 * t73 + g2_vx_leg3 * t82 + g2_wz_leg3 * t57;
         let minus_rate_dot_2_leg3 = 2.9411764705882355 * t9
-            * (t195 * (0.34 * c2_leg3) - 0.7071067811865476 * t332);
-        let t341 = g2_wz_leg3 * t59 - (g2_vx_leg3 * t89 + g2_vx_leg3 * t91);
-        let t347 = g2_vx_leg3 * t99 - g2_vx_leg3 * t104 - g2_wz_leg3 * t64;
-        let g2_wz_leg4 = 0.11764705882352941 * (t32 * t202 - t27 * t202);
-        let t357 = minus_g2_vx_leg4 * t69 - minus_g2_vx_leg4 * t78 + g2_wz_leg4 * t57;
-        let t359 = t219 - t216;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t202
-            * (0.7071067811865476 * t359 - t228 * (0.34 * c2_leg4));
-        let t370 = minus_g2_vx_leg4 * t89 - minus_g2_vx_leg4 * t91 + g2_wz_leg4 * t59;
-        let t376 = minus_g2_vx_leg4 * t99 + minus_g2_vx_leg4 * t104 + g2_wz_leg4 * t64;
-        let t381 = s2_leg1 * rate_dot_1_leg1;
-        let t386 = s2_leg2 * rate_dot_1_leg2;
-        let t392 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t398 = 2.079725827019258 * t359;
-        let t400 = s2_leg4 * rate_dot_1_leg4;
-        let t422 = minus_rate_2_leg1 + twist[2];
-        let t429 = twist[2] - rate_2_leg2;
-        let t436 = twist[2] - rate_2_leg3;
-        let t443 = twist[2] - rate_2_leg4;
+            * (t197 * (0.34 * c2_leg3) - 0.7071067811865476 * t148);
+        let t337 = g2_wz_leg3 * t59 - (g2_vx_leg3 * t89 + g2_vx_leg3 * t91);
+        let t343 = g2_vx_leg3 * t104 - g2_vx_leg3 * t99 - g2_wz_leg3 * t64;
+        let g2_wz_leg4 = 0.11764705882352941 * (t32 * t204 - t27 * t204);
+        let t353 = minus_g2_vx_leg4 * t82 - minus_g2_vx_leg4 * t73 + g2_wz_leg4 * t57;
+        let rate_dot_2_leg4 = 2.9411764705882355 * t204
+            * (0.7071067811865476 * t152 - t226 * (0.34 * c2_leg4));
+        let t365 = minus_g2_vx_leg4 * t89 - minus_g2_vx_leg4 * t91 + g2_wz_leg4 * t59;
+        let t371 = minus_g2_vx_leg4 * t104 + minus_g2_vx_leg4 * t99 + g2_wz_leg4 * t64;
+        let t376 = s2_leg1 * rate_dot_1_leg1;
+        let t381 = s2_leg2 * rate_dot_1_leg2;
+        let t387 = s2_leg3 * minus_rate_dot_1_leg3;
+        let t393 = 2.079725827019258 * t152;
+        let t395 = s2_leg4 * rate_dot_1_leg4;
+        let t417 = minus_rate_2_leg1 + twist[2];
+        let t424 = twist[2] - rate_2_leg2;
+        let t431 = twist[2] - rate_2_leg3;
+        let t438 = twist[2] - rate_2_leg4;
         Ok([
             [
-                t57 * acceleration[2], t69 * t73 - t78 * t81 + t57 * t86,
-                -(t78 * t73 + t69 * t81 + t57 * t114),
-                t78 * acceleration[0] + t69 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
-                t214 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0, t214 * rate_1_leg4,
-                ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t214, rate_1_leg4), 1.0, 0.0, 0.0, t214,
-                -(t274 * minus_rate_dot_2_leg1), t299 * rate_dot_2_leg2,
-                -(t328 * minus_rate_dot_2_leg3), t357 * rate_dot_2_leg4,
-                s2_leg1 * minus_rate_dot_2_leg1 - c2_leg1 * t149 - t274 * t381, -(t299 * t386),
-                t328 * t392, -(t214 * t398 + t357 * t400),
-                -::overact::math::signed(t274, minus_rate_2_leg1),
-                ::overact::math::signed(t299, rate_2_leg2),
-                ::overact::math::signed(t328, rate_2_leg3),
-                ::overact::math::signed(t357, rate_2_leg4),
-                ::overact::math::signed(t57 - t274, t422),
-                ::overact::math::signed(t57 - t299, t429),
-                ::overact::math::signed(t57 - t328, t436),
-                ::overact::math::signed(t57 - t357, t443),
+                t57 * acceleration[2], t57 * t68 - (t73 * t77 + t82 * t85),
+                t73 * t85 - t82 * t77 - t57 * t114, t73 * acceleration[0] + t82 * acceleration[1],
+                rate_dot_1_leg1, 0.0, 0.0, t216 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
+                t216 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t216, rate_1_leg4), 1.0, 0.0, 0.0, t216,
+                -(t272 * minus_rate_dot_2_leg1), t297 * rate_dot_2_leg2,
+                -(t325 * minus_rate_dot_2_leg3), t353 * rate_dot_2_leg4,
+                s2_leg1 * minus_rate_dot_2_leg1 - c2_leg1 * t161 - t272 * t376, -(t297 * t381),
+                t325 * t387, -(t216 * t393 + t353 * t395),
+                -::overact::math::signed(t272, minus_rate_2_leg1),
+                ::overact::math::signed(t297, rate_2_leg2),
+                ::overact::math::signed(t325, rate_2_leg3),
+                ::overact::math::signed(t353, rate_2_leg4),
+                ::overact::math::signed(t57 - t272, t417),
+                ::overact::math::signed(t57 - t297, t424),
+                ::overact::math::signed(t57 - t325, t431),
+                ::overact::math::signed(t57 - t353, t438),
             ],
             [
-                t59 * acceleration[2], t89 * t81 - t91 * t73 + t59 * t86,
-                t89 * t73 + t91 * t81 - t59 * t114,
+                t59 * acceleration[2], t89 * t77 + t91 * t85 + t59 * t68,
+                t91 * t77 - t89 * t85 - t59 * t114,
                 -(t89 * acceleration[0] + t91 * acceleration[1]), 0.0, rate_dot_1_leg2, 0.0,
-                t237 * rate_dot_1_leg4, 0.0, -minus_rate_1_leg2, 0.0, t237 * rate_1_leg4, 0.0,
+                t235 * rate_dot_1_leg4, 0.0, -minus_rate_1_leg2, 0.0, t235 * rate_1_leg4, 0.0,
                 -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                ::overact::math::signed(t237, rate_1_leg4), 0.0, 1.0, 0.0, t237,
-                -(t283 * minus_rate_dot_2_leg1), t312 * rate_dot_2_leg2,
-                -(t341 * minus_rate_dot_2_leg3), t370 * rate_dot_2_leg4, -(t283 * t381),
-                -(2.079725827019258 * t301 + t312 * t386), t341 * t392,
-                -(t237 * t398 + t370 * t400), -::overact::math::signed(t283, minus_rate_2_leg1),
-                ::overact::math::signed(t312, rate_2_leg2),
-                ::overact::math::signed(t341, rate_2_leg3),
-                ::overact::math::signed(t370, rate_2_leg4),
-                ::overact::math::signed(t59 - t283, t422),
-                ::overact::math::signed(t59 - t312, t429),
-                ::overact::math::signed(t59 - t341, t436),
-                ::overact::math::signed(t59 - t370, t443),
+                ::overact::math::signed(t235, rate_1_leg4), 0.0, 1.0, 0.0, t235,
+                -(t281 * minus_rate_dot_2_leg1), t309 * rate_dot_2_leg2,
+                -(t337 * minus_rate_dot_2_leg3), t365 * rate_dot_2_leg4, -(t281 * t376),
+                -(2.079725827019258 * t167 + t309 * t381), t337 * t387,
+                -(t235 * t393 + t365 * t395), -::overact::math::signed(t281, minus_rate_2_leg1),
+                ::overact::math::signed(t309, rate_2_leg2),
+                ::overact::math::signed(t337, rate_2_leg3),
+                ::overact::math::signed(t365, rate_2_leg4),
+                ::overact::math::signed(t59 - t281, t417),
+                ::overact::math::signed(t59 - t309, t424),
+                ::overact::math::signed(t59 - t337, t431),
+                ::overact::math::signed(t59 - t365, t438),
             ],
             [
-                -(t64 * acceleration[2]), -(t99 * t81 + t104 * t73 + t64 * t86),
-                t104 * t81 - t99 * t73 + t64 * t114, t99 * acceleration[0] - t104 * acceleration[1],
-                0.0, 0.0, -minus_rate_dot_1_leg3, t243 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
-                t243 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t243, rate_1_leg4), 0.0, 0.0, 1.0, t243,
-                -(t289 * minus_rate_dot_2_leg1), t318 * rate_dot_2_leg2,
-                -(t347 * minus_rate_dot_2_leg3), -(t376 * rate_dot_2_leg4), -(t289 * t381),
-                -(t318 * t386), t347 * t392 - 2.079725827019258 * t332, t376 * t400 - t243 * t398,
-                -::overact::math::signed(t289, minus_rate_2_leg1),
-                ::overact::math::signed(t318, rate_2_leg2),
-                ::overact::math::signed(t347, rate_2_leg3),
-                -::overact::math::signed(t376, rate_2_leg4),
-                -::overact::math::signed(t289 + t64, t422),
-                -::overact::math::signed(t318 + t64, t429),
-                -::overact::math::signed(t347 + t64, t436),
-                ::overact::math::signed(t376 - t64, t443),
+                -(t64 * acceleration[2]), t99 * t85 - t104 * t77 - t64 * t68,
+                t104 * t85 + t99 * t77 + t64 * t114, t104 * acceleration[0] - t99 * acceleration[1],
+                0.0, 0.0, -minus_rate_dot_1_leg3, t241 * rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
+                t241 * rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(t241, rate_1_leg4), 0.0, 0.0, 1.0, t241,
+                -(t287 * minus_rate_dot_2_leg1), t315 * rate_dot_2_leg2,
+                -(t343 * minus_rate_dot_2_leg3), -(t371 * rate_dot_2_leg4), -(t287 * t376),
+                -(t315 * t381), t343 * t387 - 2.079725827019258 * t148, t371 * t395 - t241 * t393,
+                -::overact::math::signed(t287, minus_rate_2_leg1),
+                ::overact::math::signed(t315, rate_2_leg2),
+                ::overact::math::signed(t343, rate_2_leg3),
+                -::overact::math::signed(t371, rate_2_leg4),
+                -::overact::math::signed(t287 + t64, t417),
+                -::overact::math::signed(t315 + t64, t424),
+                -::overact::math::signed(t343 + t64, t431),
+                ::overact::math::signed(t371 - t64, t438),
             ],
         ])
     }
@@ -4199,7 +4160,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 613 operations (248 additions, 357 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 568 intermediates.
+    /// 606 operations (241 additions, 357 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 561 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4213,301 +4174,305 @@ impl Planar4Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = s_phi + c_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[0] - t3 + 0.21213203435596426;
-        let t6 = c_phi - s_phi;
-        let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t10 = t5 + t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t18, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t18);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = pose[0] + t3 - 0.21213203435596426;
+        let t8 = c_phi - s_phi;
+        let t9 = 0.05656854249492381 * t8;
+        let t11 = pose[1] - t9 + 0.21213203435596426;
+        let t12 = t7 + t11;
+        let t13 = t12 - t5;
+        let t15 = pose[0] + t9 - 0.21213203435596426;
+        let t16 = t7 - t11;
+        let t17 = t15 - t16;
+        let t18 = t13 + t17;
+        let t19 = t18 - t11;
+        let t20 = t13 - t17;
+        let t21 = t7 - t20;
+        let t22 = t19 + t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t30, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg2;
-        let t21 = t9 - t5;
-        let t22 = 1.4705882352941178 * t21;
-        let t23 = t20 - t22;
-        let t24 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t23 * t24;
-        let t27 = pose[0] - t7 + 0.21213203435596426;
-        let t29 = pose[1] - t3 + 0.21213203435596426;
-        let t30 = t27 - t29;
-        let t38 = 8.650519031141869
-            * (0.5 * (t30 * t30) - (t27 * t27 + t29 * t29 - 0.1156));
-        ::overact::guard::reach(t38, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t38);
+        let t32 = 0.7071067811865476 * minus_s2_leg2;
+        let t33 = t21 - t19;
+        let t34 = 1.4705882352941178 * t33;
+        let t35 = t32 - t34;
+        let t36 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t35 * t36;
+        let t45 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t45, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t45);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t40 = 0.7071067811865476 * minus_s2_leg3;
-        let t41 = t27 + t29;
-        let t42 = 1.4705882352941178 * t41;
-        let t43 = t40 + t42;
-        let t44 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t43 * t44;
-        let t47 = t20 + t22;
-        let minus_g1_vy_leg2 = t47 * t24;
-        let t49 = t42 - t40;
-        let minus_g1_vx_leg3 = t49 * t44;
-        let t54 = pose[1] + t3 - 0.21213203435596426;
-        let t56 = pose[0] + t7 - 0.21213203435596426;
-        let t57 = t54 - t56;
-        let t65 = 8.650519031141869
-            * (0.5 * (t57 * t57) - (t56 * t56 + t54 * t54 - 0.1156));
-        ::overact::guard::reach(t65, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t65);
+        let t47 = 0.7071067811865476 * minus_s2_leg3;
+        let t48 = 1.4705882352941178 * t18;
+        let t49 = t47 + t48;
+        let t50 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t49 * t50;
+        let t53 = t32 + t34;
+        let minus_g1_vy_leg2 = t53 * t36;
+        let t55 = t48 - t47;
+        let minus_g1_vx_leg3 = t55 * t50;
+        let t59 = t5 - t15;
+        let t67 = 8.650519031141869
+            * (0.5 * (t59 * t59) - (t15 * t15 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t67, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t67 = 0.7071067811865476 * minus_s2_leg1;
-        let t68 = t56 + t54;
-        let t69 = 1.4705882352941178 * t68;
-        let t70 = t67 - t69;
-        let t71 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t70 * t71;
-        let t74 = t69 + t67;
-        let minus_g1_vx_leg1 = t74 * t71;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t83 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t87 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let t95 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t97 = minus_g1_vx_leg2 * t83 + minus_g1_vy_leg2 * t87 - g1_wz_leg2 * t95;
-        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t97, 0.2752380952380954, "kept actuators")?;
-        let t98 = 1.0 / t97;
-        let t99 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
-            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t98;
-        let t106 = pose[0] + t3 - 0.21213203435596426;
-        let t108 = pose[1] - t7 + 0.21213203435596426;
-        let t109 = t106 + t108;
-        let t117 = 8.650519031141869
-            * (0.5 * (t109 * t109) - (t106 * t106 + t108 * t108 - 0.1156));
-        ::overact::guard::reach(t117, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t117);
+        let t69 = 0.7071067811865476 * minus_s2_leg1;
+        let t70 = t15 + t5;
+        let t71 = 1.4705882352941178 * t70;
+        let t72 = t69 - t71;
+        let t73 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t72 * t73;
+        let t76 = t71 + t69;
+        let minus_g1_vx_leg1 = t76 * t73;
+        let g1_wz_leg1 = t9 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t85 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t89 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
+        let t97 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t99 = minus_g1_vx_leg2 * t85 + minus_g1_vy_leg2 * t89 - g1_wz_leg2 * t97;
+        ::overact::guard::platform(t99, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.2752380952380954, "kept actuators")?;
+        let t100 = 1.0 / t99;
+        let t101 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t100;
+        let t114 = 8.650519031141869
+            * (0.5 * (t12 * t12) - (t7 * t7 + t11 * t11 - 0.1156));
+        ::overact::guard::reach(t114, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t114);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t119 = 0.7071067811865476 * minus_s2_leg4;
-        let t120 = t106 - t108;
-        let t121 = 1.4705882352941178 * t120;
-        let t122 = t119 + t121;
-        let t123 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t122 * t123;
-        let t126 = t121 - t119;
-        let minus_g1_vx_leg4 = t126 * t123;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t138 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t116 = 0.7071067811865476 * minus_s2_leg4;
+        let t117 = 1.4705882352941178 * t16;
+        let t118 = t116 + t117;
+        let t119 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t118 * t119;
+        let t122 = t117 - t116;
+        let minus_g1_vx_leg4 = t122 * t119;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t9 * minus_g1_vx_leg4;
+        let t134 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t145 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t141 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t145, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t145, 3.440476190476192, "actuators")?;
-        let t146 = 1.0 / t145;
-        let t147 = t138 * t146;
-        let t163 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        ::overact::guard::platform(t141, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t141, 3.440476190476192, "actuators")?;
+        let t142 = 1.0 / t141;
+        let t143 = t134 * t142;
+        let t159 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t165 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t163 * t147;
-        let t173 = t163 * t146;
-        let t175 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t161 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t159 * t143;
+        let t169 = t159 * t142;
+        let t171 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t163 * t173;
-        ::overact::guard::platform(t175, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t175, 3.440476190476192, "actuators")?;
+            - t159 * t169;
+        ::overact::guard::platform(t171, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t171, 3.440476190476192, "actuators")?;
+        let t172 = 1.0 / t171;
+        let t173 = t161 * t172;
+        let t175 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t134 * t143
+            - t161 * t173;
+        ::overact::guard::platform(t175, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t175, 0.02560000000000001, "actuators")?;
         let t176 = 1.0 / t175;
-        let t177 = t165 * t176;
-        let t179 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t138 * t147
-            - t165 * t177;
-        ::overact::guard::platform(t179, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t179, 0.02560000000000001, "actuators")?;
-        let t180 = 1.0 / t179;
-        let t194 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t190 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t205 = g1_vy_leg1 * actuator_velocities[0]
+        let t201 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t194 * t173;
-        let t207 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t190 * t169;
+        let t203 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t194 * t147 - t177 * t205;
-        let rate_3_leg1 = t180 * t207;
-        let t209 = t7 * rate_3_leg1;
-        let t210 = rate_3_leg1 * t209;
-        let t212 = t3 * rate_3_leg1;
-        let t213 = rate_3_leg1 * t212;
-        let g2_vx_leg1 = 2.079725827019258 * t71;
-        let t221 = t176 * t205 - t177 * rate_3_leg1;
-        let t224 = t147 * rate_3_leg1 - (t194 * t146 + t173 * t221);
-        let t225 = t224 - t212;
-        let t227 = t221 + t209;
-        let rate_2_leg1 = g2_vx_leg1 * t225 + g2_vx_leg1 * t227;
-        let t230 = rate_2_leg1 * rate_2_leg1;
-        let t231 = 0.34 * t230;
-        let rate_dot_1_leg1 = t71 * (t74 * t210 - t70 * t213 - t231);
-        let t234 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t24;
-        let t240 = t221 - t212;
-        let t242 = t224 - t209;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t240 - minus_g2_vx_leg2 * t242;
-        let t245 = rate_2_leg2 * rate_2_leg2;
-        let t246 = 0.34 * t245;
-        let minus_rate_dot_1_leg2 = t24 * (t23 * t213 - t47 * t210 + t246);
-        let t249 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t44;
-        let t256 = t224 + t212;
-        let t258 = t221 - t209;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t256 + minus_g2_vx_leg3 * t258;
-        let t261 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t262 = 0.34 * t261;
-        let minus_rate_dot_1_leg3 = t44 * (t49 * t210 + t43 * t213 + t262);
-        let t265 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t123;
-        let t269 = t224 + t209;
-        let t271 = t221 + t212;
-        let rate_2_leg4 = g2_vx_leg4 * t269 - g2_vx_leg4 * t271;
-        let t274 = rate_2_leg4 * rate_2_leg4;
-        let t275 = 0.34 * t274;
-        let minus_rate_dot_1_leg4 = t123 * (t275 - (t126 * t213 + t122 * t210));
-        let t281 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t290 = minus_g1_vx_leg1 * t234 + minus_g1_vx_leg2 * t249
-            + minus_g1_vx_leg3 * t265 + minus_g1_vx_leg4 * t281;
-        let t301 = g1_vy_leg1 * t234 - minus_g1_vy_leg2 * t249 - minus_g1_vy_leg3 * t265
-            + g1_vy_leg4 * t281 + t173 * t290;
-        let t303 = g1_wz_leg1 * t234 + g1_wz_leg2 * t249 + g1_wz_leg3 * t265
-            + g1_wz_leg4 * t281 - t147 * t290 - t177 * t301;
-        let rate_dot_3_leg1 = t180 * t303;
-        let t306 = t95 * t98;
-        let t311 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
-            * t98;
-        let t315 = t176 * t301 - t177 * rate_dot_3_leg1;
-        let t321 = t147 * rate_dot_3_leg1 - (t146 * t290 + t173 * t315);
-        let t323 = c_phi * t315 - s_phi * t321;
-        let t328 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t98;
-        let t329 = rate_3_leg1 * rate_3_leg1;
-        let t332 = c_phi * t329 + s_phi * rate_dot_3_leg1;
-        let t337 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3) * t98;
-        let t340 = c_phi * rate_dot_3_leg1 - s_phi * t329;
-        let t344 = t83 * t98;
-        let t346 = t87 * t98;
-        let t354 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t98;
-        let t359 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t98;
-        let t369 = c_phi * t321 + s_phi * t315;
-        let t391 = t7 * rate_dot_3_leg1;
-        let t393 = t315 + t391 - t213;
-        let t395 = t3 * rate_dot_3_leg1;
-        let t397 = t321 - t395 - t210;
-        let t400 = t70 * t393 - t74 * t397 - t231;
-        let rate_dot_1_leg1_2 = t71 * t400;
-        let t403 = t321 - t391 + t213;
-        let t406 = t315 - t395 - t210;
-        let t409 = t23 * t403 + t47 * t406 + t246;
-        let minus_rate_dot_1_leg2_2 = t24 * t409;
-        let t412 = t321 + t395 + t210;
-        let t415 = t315 - t391 + t213;
-        let t418 = t49 * t412 + t43 * t415 + t262;
-        let minus_rate_dot_1_leg3_2 = t44 * t418;
-        let t424 = g1_wz_leg4 * t99 - (minus_g1_vx_leg4 * t328 + g1_vy_leg4 * t337);
-        let t426 = t321 + t391 - t213;
-        let t429 = t315 + t395 + t210;
-        let t432 = t126 * t426 - t122 * t429 + t275;
-        let minus_rate_dot_1_leg4_2 = t123 * t432;
-        let t439 = minus_g1_vx_leg4 * t344 - g1_vy_leg4 * t346 - g1_wz_leg4 * t306;
-        let t445 = g1_vy_leg4 * t354 - minus_g1_vx_leg4 * t359 + g1_wz_leg4 * t311;
-        let rate_1_leg1 = g1_vy_leg1 * t227 - minus_g1_vx_leg1 * t225;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t242 + minus_g1_vy_leg2 * t240;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t256 + minus_g1_vy_leg3 * t258;
-        let rate_1_leg4 = g1_vy_leg4 * t271 - minus_g1_vx_leg4 * t269;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t71 - t2 * t71);
-        let t476 = g2_vx_leg1 * t328 - g2_vx_leg1 * t337 + g2_wz_leg1 * t99;
-        let t478 = t397 + t393;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t71
-            * (0.7071067811865476 * t478 + 0.7071067811865476 * t68 * t230);
-        let t489 = g2_vx_leg1 * t344 + g2_vx_leg1 * t346 + g2_wz_leg1 * t306;
-        let t495 = g2_vx_leg1 * t359 + g2_vx_leg1 * t354 + g2_wz_leg1 * t311;
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
-        let t505 = g2_wz_leg2 * t99
-            - (minus_g2_vx_leg2 * t328 + minus_g2_vx_leg2 * t337);
-        let t507 = t403 - t406;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * t507 - 0.7071067811865476 * t21 * t245);
-        let t518 = minus_g2_vx_leg2 * t344 - minus_g2_vx_leg2 * t346 - g2_wz_leg2 * t306;
-        let t524 = minus_g2_vx_leg2 * t354 - minus_g2_vx_leg2 * t359 + g2_wz_leg2 * t311;
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t44 - t2 * t44);
-        let t534 = minus_g2_vx_leg3 * t337 - minus_g2_vx_leg3 * t328 + g2_wz_leg3 * t99;
-        let t536 = t412 + t415;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t44
-            * (0.7071067811865476 * t536 + 0.7071067811865476 * t41 * t261);
-        let t547 = minus_g2_vx_leg3 * t344 + minus_g2_vx_leg3 * t346 - g2_wz_leg3 * t306;
-        let t553 = g2_wz_leg3 * t311
-            - (minus_g2_vx_leg3 * t359 + minus_g2_vx_leg3 * t354);
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t123 - t2 * t123);
-        let t563 = g2_vx_leg4 * t328 + g2_vx_leg4 * t337 + g2_wz_leg4 * t99;
-        let t565 = t429 - t426;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t123
-            * (0.7071067811865476 * t565 - 0.7071067811865476 * t120 * t274);
-        let t576 = g2_vx_leg4 * t346 - g2_vx_leg4 * t344 - g2_wz_leg4 * t306;
-        let t582 = g2_vx_leg4 * t359 - g2_vx_leg4 * t354 + g2_wz_leg4 * t311;
-        let t599 = 2.079725827019258 * t565;
-        let t622 = rate_3_leg1 - rate_2_leg1;
-        let t629 = rate_3_leg1 - rate_2_leg2;
-        let t636 = minus_rate_2_leg3 + rate_3_leg1;
-        let t643 = rate_3_leg1 - rate_2_leg4;
+            + g1_wz_leg4 * actuator_velocities[3] - t190 * t143 - t173 * t201;
+        let rate_3_leg1 = t176 * t203;
+        let t205 = t9 * rate_3_leg1;
+        let t206 = rate_3_leg1 * t205;
+        let t208 = t3 * rate_3_leg1;
+        let t209 = rate_3_leg1 * t208;
+        let g2_vx_leg1 = 2.079725827019258 * t73;
+        let t217 = t172 * t201 - t173 * rate_3_leg1;
+        let t220 = t143 * rate_3_leg1 - (t190 * t142 + t169 * t217);
+        let t221 = t220 - t208;
+        let t223 = t217 + t205;
+        let rate_2_leg1 = g2_vx_leg1 * t221 + g2_vx_leg1 * t223;
+        let t226 = rate_2_leg1 * rate_2_leg1;
+        let t227 = 0.34 * t226;
+        let rate_dot_1_leg1 = t73 * (t76 * t206 - t72 * t209 - t227);
+        let t230 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t36;
+        let t236 = t217 - t208;
+        let t238 = t220 - t205;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t236 - minus_g2_vx_leg2 * t238;
+        let t241 = rate_2_leg2 * rate_2_leg2;
+        let t242 = 0.34 * t241;
+        let minus_rate_dot_1_leg2 = t36 * (t35 * t209 - t53 * t206 + t242);
+        let t245 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t50;
+        let t252 = t220 + t208;
+        let t254 = t217 - t205;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t252 + minus_g2_vx_leg3 * t254;
+        let t257 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t258 = 0.34 * t257;
+        let minus_rate_dot_1_leg3 = t50 * (t55 * t206 + t49 * t209 + t258);
+        let t261 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t119;
+        let t265 = t220 + t205;
+        let t267 = t217 + t208;
+        let rate_2_leg4 = g2_vx_leg4 * t265 - g2_vx_leg4 * t267;
+        let t270 = rate_2_leg4 * rate_2_leg4;
+        let t271 = 0.34 * t270;
+        let minus_rate_dot_1_leg4 = t119 * (t271 - (t122 * t209 + t118 * t206));
+        let t277 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t286 = minus_g1_vx_leg1 * t230 + minus_g1_vx_leg2 * t245
+            + minus_g1_vx_leg3 * t261 + minus_g1_vx_leg4 * t277;
+        let t297 = g1_vy_leg1 * t230 - minus_g1_vy_leg2 * t245 - minus_g1_vy_leg3 * t261
+            + g1_vy_leg4 * t277 + t169 * t286;
+        let t299 = g1_wz_leg1 * t230 + g1_wz_leg2 * t245 + g1_wz_leg3 * t261
+            + g1_wz_leg4 * t277 - t143 * t286 - t173 * t297;
+        let rate_dot_3_leg1 = t176 * t299;
+        let t302 = t97 * t100;
+        let t307 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t100;
+        let t312 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t100;
+        let t313 = rate_3_leg1 * rate_3_leg1;
+        let t316 = s_phi * t313 - c_phi * rate_dot_3_leg1;
+        let t321 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t100;
+        let t324 = c_phi * t313 + s_phi * rate_dot_3_leg1;
+        let t329 = t172 * t297 - t173 * rate_dot_3_leg1;
+        let t335 = t143 * rate_dot_3_leg1 - (t142 * t286 + t169 * t329);
+        let t337 = c_phi * t329 - s_phi * t335;
+        let t340 = t85 * t100;
+        let t342 = t89 * t100;
+        let t351 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t100;
+        let t356 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t100;
+        let t365 = s_phi * t329 + c_phi * t335;
+        let t387 = t9 * rate_dot_3_leg1;
+        let t389 = t335 - t387 + t209;
+        let t390 = t3 * rate_dot_3_leg1;
+        let t392 = t329 - t390 - t206;
+        let t393 = t389 - t392;
+        let t395 = t335 + t390 + t206;
+        let t396 = t395 - t393;
+        let t399 = t329 - t387 + t209;
+        let t400 = t395 + t399;
+        let t401 = t400 - t389;
+        let t403 = t335 + t387 - t209;
+        let t404 = t401 - t403;
+        let t405 = t399 - t404;
+        let t408 = t72 * t396 - t76 * t405 - t227;
+        let rate_dot_1_leg1_2 = t73 * t408;
+        let t413 = t35 * t389 + t53 * t392 + t242;
+        let minus_rate_dot_1_leg2_2 = t36 * t413;
+        let t418 = t55 * t395 + t49 * t399 + t258;
+        let minus_rate_dot_1_leg3_2 = t50 * t418;
+        let t424 = g1_wz_leg4 * t101 - (minus_g1_vx_leg4 * t321 + g1_vy_leg4 * t312);
+        let t428 = t122 * t403 - t118 * t401 + t271;
+        let minus_rate_dot_1_leg4_2 = t119 * t428;
+        let t435 = minus_g1_vx_leg4 * t340 - g1_vy_leg4 * t342 - g1_wz_leg4 * t302;
+        let t441 = g1_vy_leg4 * t356 - minus_g1_vx_leg4 * t351 + g1_wz_leg4 * t307;
+        let rate_1_leg1 = g1_vy_leg1 * t223 - minus_g1_vx_leg1 * t221;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t238 + minus_g1_vy_leg2 * t236;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t252 + minus_g1_vy_leg3 * t254;
+        let rate_1_leg4 = g1_vy_leg4 * t267 - minus_g1_vx_leg4 * t265;
+        let g2_wz_leg1 = 0.11764705882352941 * (t8 * t73 - t2 * t73);
+        let t472 = g2_vx_leg1 * t321 - g2_vx_leg1 * t312 + g2_wz_leg1 * t101;
+        let t474 = t405 + t396;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t73
+            * (0.7071067811865476 * t474 + 0.7071067811865476 * t70 * t226);
+        let t485 = g2_vx_leg1 * t340 + g2_vx_leg1 * t342 + g2_wz_leg1 * t302;
+        let t491 = g2_vx_leg1 * t351 + g2_vx_leg1 * t356 + g2_wz_leg1 * t307;
+        let g2_wz_leg2 = 0.11764705882352941 * (t8 * t36 - t2 * t36);
+        let t501 = g2_wz_leg2 * t101
+            - (minus_g2_vx_leg2 * t321 + minus_g2_vx_leg2 * t312);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t36
+            * (0.7071067811865476 * t393 - 0.7071067811865476 * t33 * t241);
+        let t513 = minus_g2_vx_leg2 * t340 - minus_g2_vx_leg2 * t342 - g2_wz_leg2 * t302;
+        let t519 = minus_g2_vx_leg2 * t356 - minus_g2_vx_leg2 * t351 + g2_wz_leg2 * t307;
+        let g2_wz_leg3 = 0.11764705882352941 * (t8 * t50 - t2 * t50);
+        let t529 = minus_g2_vx_leg3 * t312 - minus_g2_vx_leg3 * t321 + g2_wz_leg3 * t101;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t50
+            * (0.7071067811865476 * t400 + 0.7071067811865476 * t18 * t257);
+        let t541 = minus_g2_vx_leg3 * t340 + minus_g2_vx_leg3 * t342 - g2_wz_leg3 * t302;
+        let t547 = g2_wz_leg3 * t307
+            - (minus_g2_vx_leg3 * t351 + minus_g2_vx_leg3 * t356);
+        let g2_wz_leg4 = 0.11764705882352941 * (t8 * t119 - t2 * t119);
+        let t557 = g2_vx_leg4 * t321 + g2_vx_leg4 * t312 + g2_wz_leg4 * t101;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t119
+            * (0.7071067811865476 * t404 - 0.7071067811865476 * t16 * t270);
+        let t569 = g2_vx_leg4 * t342 - g2_vx_leg4 * t340 - g2_wz_leg4 * t302;
+        let t575 = g2_vx_leg4 * t351 - g2_vx_leg4 * t356 + g2_wz_leg4 * t307;
+        let t592 = 2.079725827019258 * t404;
+        let t615 = rate_3_leg1 - rate_2_leg1;
+        let t622 = rate_3_leg1 - rate_2_leg2;
+        let t629 = minus_rate_2_leg3 + rate_3_leg1;
+        let t636 = rate_3_leg1 - rate_2_leg4;
         Ok([
             [
-                t99 * rate_dot_3_leg1, t99 * t323 - (t328 * t332 + t337 * t340),
-                t337 * t332 - t328 * t340 - t99 * t369, t328 * t321 - t337 * t315,
+                t101 * rate_dot_3_leg1, t312 * t316 - t321 * t324 + t101 * t337,
+                t321 * t316 + t312 * t324 - t101 * t365, t321 * t335 - t312 * t329,
                 rate_dot_1_leg1_2, 0.0, 0.0, -(t424 * minus_rate_dot_1_leg4_2), rate_1_leg1, 0.0,
                 0.0, t424 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
                 ::overact::math::signed(t424, rate_1_leg4), 1.0, 0.0, 0.0, t424,
-                t476 * rate_dot_2_leg1, -(t505 * minus_rate_dot_2_leg2),
-                -(t534 * minus_rate_dot_2_leg3), -(t563 * minus_rate_dot_2_leg4),
-                2.079725827019258 * t478 + t476 * t400, -(t505 * t409), -(t534 * t418),
-                -(t424 * t599 + t563 * t432), ::overact::math::signed(t476, rate_2_leg1),
-                ::overact::math::signed(t505, rate_2_leg2),
-                -::overact::math::signed(t534, minus_rate_2_leg3),
-                ::overact::math::signed(t563, rate_2_leg4),
-                ::overact::math::signed(t99 - t476, t622),
-                ::overact::math::signed(t99 - t505, t629),
-                ::overact::math::signed(t99 - t534, t636),
-                ::overact::math::signed(t99 - t563, t643),
+                t472 * rate_dot_2_leg1, -(t501 * minus_rate_dot_2_leg2),
+                -(t529 * minus_rate_dot_2_leg3), -(t557 * minus_rate_dot_2_leg4),
+                2.079725827019258 * t474 + t472 * t408, -(t501 * t413), -(t529 * t418),
+                -(t424 * t592 + t557 * t428), ::overact::math::signed(t472, rate_2_leg1),
+                ::overact::math::signed(t501, rate_2_leg2),
+                -::overact::math::signed(t529, minus_rate_2_leg3),
+                ::overact::math::signed(t557, rate_2_leg4),
+                ::overact::math::signed(t101 - t472, t615),
+                ::overact::math::signed(t101 - t501, t622),
+                ::overact::math::signed(t101 - t529, t629),
+                ::overact::math::signed(t101 - t557, t636),
             ],
             [
-                -(t306 * rate_dot_3_leg1), t344 * t332 - t346 * t340 - t306 * t323,
-                t344 * t340 + t346 * t332 + t306 * t369, -(t344 * t321 + t346 * t315), 0.0,
-                -minus_rate_dot_1_leg2_2, 0.0, -(t439 * minus_rate_dot_1_leg4_2), 0.0,
-                -minus_rate_1_leg2, 0.0, t439 * rate_1_leg4, 0.0,
+                -(t302 * rate_dot_3_leg1), t340 * t324 + t342 * t316 - t302 * t337,
+                t342 * t324 - t340 * t316 + t302 * t365, -(t340 * t335 + t342 * t329), 0.0,
+                -minus_rate_dot_1_leg2_2, 0.0, -(t435 * minus_rate_dot_1_leg4_2), 0.0,
+                -minus_rate_1_leg2, 0.0, t435 * rate_1_leg4, 0.0,
                 -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                ::overact::math::signed(t439, rate_1_leg4), 0.0, 1.0, 0.0, t439,
-                -(t489 * rate_dot_2_leg1), -(t518 * minus_rate_dot_2_leg2),
-                -(t547 * minus_rate_dot_2_leg3), -(t576 * minus_rate_dot_2_leg4), -(t489 * t400),
-                -(2.079725827019258 * t507 + t518 * t409), -(t547 * t418),
-                -(t439 * t599 + t576 * t432), -::overact::math::signed(t489, rate_2_leg1),
-                ::overact::math::signed(t518, rate_2_leg2),
-                -::overact::math::signed(t547, minus_rate_2_leg3),
-                ::overact::math::signed(t576, rate_2_leg4),
-                ::overact::math::signed(t489 - t306, t622),
-                -::overact::math::signed(t518 + t306, t629),
-                -::overact::math::signed(t547 + t306, t636),
-                -::overact::math::signed(t576 + t306, t643),
+                ::overact::math::signed(t435, rate_1_leg4), 0.0, 1.0, 0.0, t435,
+                -(t485 * rate_dot_2_leg1), -(t513 * minus_rate_dot_2_leg2),
+                -(t541 * minus_rate_dot_2_leg3), -(t569 * minus_rate_dot_2_leg4), -(t485 * t408),
+                -(2.079725827019258 * t393 + t513 * t413), -(t541 * t418),
+                -(t435 * t592 + t569 * t428), -::overact::math::signed(t485, rate_2_leg1),
+                ::overact::math::signed(t513, rate_2_leg2),
+                -::overact::math::signed(t541, minus_rate_2_leg3),
+                ::overact::math::signed(t569, rate_2_leg4),
+                ::overact::math::signed(t485 - t302, t615),
+                -::overact::math::signed(t513 + t302, t622),
+                -::overact::math::signed(t541 + t302, t629),
+                -::overact::math::signed(t569 + t302, t636),
             ],
             [
-                t311 * rate_dot_3_leg1, t354 * t340 - t359 * t332 + t311 * t323,
-                -(t359 * t340 + t354 * t332 + t311 * t369), t359 * t321 + t354 * t315, 0.0, 0.0,
-                -minus_rate_dot_1_leg3_2, -(t445 * minus_rate_dot_1_leg4_2), 0.0, 0.0,
-                -minus_rate_1_leg3, t445 * rate_1_leg4, 0.0, 0.0,
+                t307 * rate_dot_3_leg1, t307 * t337 - (t351 * t324 + t356 * t316),
+                t351 * t316 - t356 * t324 - t307 * t365, t351 * t335 + t356 * t329, 0.0, 0.0,
+                -minus_rate_dot_1_leg3_2, -(t441 * minus_rate_dot_1_leg4_2), 0.0, 0.0,
+                -minus_rate_1_leg3, t441 * rate_1_leg4, 0.0, 0.0,
                 -::overact::math::sign(minus_rate_1_leg3),
-                ::overact::math::signed(t445, rate_1_leg4), 0.0, 0.0, 1.0, t445,
-                t495 * rate_dot_2_leg1, -(t524 * minus_rate_dot_2_leg2),
-                -(t553 * minus_rate_dot_2_leg3), -(t582 * minus_rate_dot_2_leg4), t495 * t400,
-                -(t524 * t409), -(2.079725827019258 * t536 + t553 * t418),
-                -(t445 * t599 + t582 * t432), ::overact::math::signed(t495, rate_2_leg1),
-                ::overact::math::signed(t524, rate_2_leg2),
-                -::overact::math::signed(t553, minus_rate_2_leg3),
-                ::overact::math::signed(t582, rate_2_leg4),
-                ::overact::math::signed(t311 - t495, t622),
-                ::overact::math::signed(t311 - t524, t629),
-                ::overact::math::signed(t311 - t553, t636),
-                ::overact::math::signed(t311 - t582, t643),
+                ::overact::math::signed(t441, rate_1_leg4), 0.0, 0.0, 1.0, t441,
+                t491 * rate_dot_2_leg1, -(t519 * minus_rate_dot_2_leg2),
+                -(t547 * minus_rate_dot_2_leg3), -(t575 * minus_rate_dot_2_leg4), t491 * t408,
+                -(t519 * t413), -(2.079725827019258 * t400 + t547 * t418),
+                -(t441 * t592 + t575 * t428), ::overact::math::signed(t491, rate_2_leg1),
+                ::overact::math::signed(t519, rate_2_leg2),
+                -::overact::math::signed(t547, minus_rate_2_leg3),
+                ::overact::math::signed(t575, rate_2_leg4),
+                ::overact::math::signed(t307 - t491, t615),
+                ::overact::math::signed(t307 - t519, t622),
+                ::overact::math::signed(t307 - t547, t629),
+                ::overact::math::signed(t307 - t575, t636),
             ],
         ])
     }
@@ -4519,7 +4484,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 121 operations (59 additions, 58 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 124 intermediates.
+    /// 117 operations (55 additions, 58 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 120 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4529,58 +4494,60 @@ impl Planar4Prr {
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = pose[0] + t3 - 0.21213203435596426;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
         let t7 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[1] + t7 - 0.21213203435596426;
-        let t11 = 1.4705882352941178 * (t5 + t9);
-        let t12 = t9 - t5;
-        let t20 = 8.650519031141869 * (0.5 * (t12 * t12) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t20, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t20);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t10 = t5 + t9;
+        let t12 = pose[1] - t3 + 0.21213203435596426;
+        let t13 = t10 - t12;
+        let t14 = t5 - t9;
+        let t16 = pose[0] + t7 - 0.21213203435596426;
+        let t17 = t16 - t14;
+        let t18 = t13 + t17;
+        let t19 = t18 - t9;
+        let t20 = t17 - t13;
+        let t21 = t20 + t5;
+        let t23 = 1.4705882352941178 * (t19 + t21);
+        let t24 = t21 - t19;
+        let t32 = 8.650519031141869
+            * (0.5 * (t24 * t24) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t32, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t22 = 0.7071067811865476 * minus_s2_leg1;
-        let t24 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = (t11 + t22) * t24;
-        let t28 = pose[0] - t7 + 0.21213203435596426;
-        let t30 = pose[1] + t3 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t34 = 0.7071067811865476 * minus_s2_leg1;
+        let t36 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = (t23 + t34) * t36;
+        let t46 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t43 = 1.4705882352941178 * (t30 - t28);
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t41 - t43) * t45;
-        let t50 = pose[0] - t3 + 0.21213203435596426;
-        let t52 = pose[1] - t7 + 0.21213203435596426;
-        let t54 = 1.4705882352941178 * (t50 + t52);
-        let t55 = t50 - t52;
-        let t63 = 8.650519031141869
-            * (0.5 * (t55 * t55) - (t50 * t50 + t52 * t52 - 0.1156));
+        let t48 = 0.7071067811865476 * minus_s2_leg2;
+        let t49 = 1.4705882352941178 * t20;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t48 - t49) * t51;
+        let t55 = 1.4705882352941178 * t10;
+        let t63 = 8.650519031141869 * (0.5 * (t14 * t14) - (t5 * t5 + t9 * t9 - 0.1156));
         ::overact::guard::reach(t63, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t63);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
         let t65 = 0.7071067811865476 * minus_s2_leg3;
         let t67 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = (t54 - t65) * t67;
-        let t72 = pose[0] + t7 - 0.21213203435596426;
-        let t74 = pose[1] - t3 + 0.21213203435596426;
-        let t76 = 1.4705882352941178 * (t72 - t74);
-        let t77 = t72 + t74;
-        let t85 = 8.650519031141869
-            * (0.5 * (t77 * t77) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t85, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t85);
+        let minus_g1_vx_leg3 = (t55 - t65) * t67;
+        let t72 = 1.4705882352941178 * (t16 - t12);
+        let t73 = t16 + t12;
+        let t81 = 8.650519031141869
+            * (0.5 * (t73 * t73) - (t16 * t16 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t81, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t81);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t87 = 0.7071067811865476 * minus_s2_leg4;
-        let t89 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = (t76 - t87) * t89;
-        let g1_vy_leg1 = (t22 - t11) * t24;
-        let minus_g1_vy_leg2 = (t41 + t43) * t45;
-        let minus_g1_vy_leg3 = (t65 + t54) * t67;
-        let g1_vy_leg4 = (t87 + t76) * t89;
+        let t83 = 0.7071067811865476 * minus_s2_leg4;
+        let t85 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = (t72 - t83) * t85;
+        let g1_vy_leg1 = (t34 - t23) * t36;
+        let minus_g1_vy_leg2 = (t48 + t49) * t51;
+        let minus_g1_vy_leg3 = (t65 + t55) * t67;
+        let g1_vy_leg4 = (t83 + t72) * t85;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
@@ -4602,7 +4569,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 163 operations (70 additions, 88 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 166 intermediates.
+    /// 159 operations (66 additions, 88 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 162 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4612,96 +4579,97 @@ impl Planar4Prr {
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t5 = pose[0] + t3 - 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[1] - t7 + 0.21213203435596426;
-        let t10 = t5 + t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t18, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t18);
+        let t5 = 0.05656854249492381 * (c_phi - s_phi);
+        let t7 = pose[1] + t5 - 0.21213203435596426;
+        let t9 = pose[0] - t3 + 0.21213203435596426;
+        let t10 = t7 - t9;
+        let t12 = pose[1] + t3 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t9 + t7;
+        let t16 = pose[0] + t5 - 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t7 + t18;
+        let t20 = t12 - t16;
+        let t21 = t9 + t20;
+        let t22 = t19 + t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t19 * t19 + t21 * t21 - 0.1156));
+        ::overact::guard::reach(t30, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg4;
-        let t22 = 1.4705882352941178 * (t5 - t9);
-        let t24 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = (t20 + t22) * t24;
-        let minus_g1_vx_leg4 = (t22 - t20) * t24;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t32 = pose[0] - t3 + 0.21213203435596426;
-        let t34 = pose[1] + t7 - 0.21213203435596426;
-        let t35 = t32 + t34;
-        let t43 = 8.650519031141869
-            * (0.5 * (t35 * t35) - (t32 * t32 + t34 * t34 - 0.1156));
-        ::overact::guard::reach(t43, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t43);
+        let t32 = 0.7071067811865476 * minus_s2_leg4;
+        let t34 = 1.4705882352941178 * (t19 - t21);
+        let t36 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t32 + t34) * t36;
+        let minus_g1_vx_leg4 = (t34 - t32) * t36;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t5 * minus_g1_vx_leg4;
+        let t50 = 8.650519031141869 * (0.5 * (t14 * t14) - (t9 * t9 + t7 * t7 - 0.1156));
+        ::overact::guard::reach(t50, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t50);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t45 = 0.7071067811865476 * minus_s2_leg2;
-        let t47 = 1.4705882352941178 * (t34 - t32);
-        let t49 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t45 - t47) * t49;
-        let t52 = pose[0] - t7 + 0.21213203435596426;
-        let t54 = pose[1] - t3 + 0.21213203435596426;
-        let t55 = t52 - t54;
-        let t63 = 8.650519031141869
-            * (0.5 * (t55 * t55) - (t52 * t52 + t54 * t54 - 0.1156));
-        ::overact::guard::reach(t63, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t63);
+        let t52 = 0.7071067811865476 * minus_s2_leg2;
+        let t53 = 1.4705882352941178 * t10;
+        let t55 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t52 - t53) * t55;
+        let t64 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t64, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t64);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t65 = 0.7071067811865476 * minus_s2_leg3;
-        let t67 = 1.4705882352941178 * (t52 + t54);
-        let t69 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = (t65 + t67) * t69;
-        let minus_g1_vy_leg2 = (t45 + t47) * t49;
-        let minus_g1_vx_leg3 = (t67 - t65) * t69;
-        let t79 = pose[1] + t3 - 0.21213203435596426;
-        let t81 = pose[0] + t7 - 0.21213203435596426;
-        let t82 = t79 - t81;
-        let t90 = 8.650519031141869
-            * (0.5 * (t82 * t82) - (t81 * t81 + t79 * t79 - 0.1156));
-        ::overact::guard::reach(t90, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t90);
+        let t66 = 0.7071067811865476 * minus_s2_leg3;
+        let t68 = 1.4705882352941178 * (t13 + t17);
+        let t70 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = (t66 + t68) * t70;
+        let minus_g1_vy_leg2 = (t52 + t53) * t55;
+        let minus_g1_vx_leg3 = (t68 - t66) * t70;
+        let t86 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t16 * t16 + t12 * t12 - 0.1156));
+        ::overact::guard::reach(t86, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t86);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t92 = 0.7071067811865476 * minus_s2_leg1;
-        let t94 = 1.4705882352941178 * (t81 + t79);
-        let t96 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = (t92 - t94) * t96;
-        let minus_g1_vx_leg1 = (t94 + t92) * t96;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t108 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t112 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let t120 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t122 = minus_g1_vx_leg2 * t108 + minus_g1_vy_leg2 * t112 - g1_wz_leg2 * t120;
-        ::overact::guard::platform(t122, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t122, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t122, 0.2752380952380954, "kept actuators")?;
-        let t123 = 1.0 / t122;
-        let t136 = minus_g1_vx_leg4
-            * ((g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t123)
+        let t88 = 0.7071067811865476 * minus_s2_leg1;
+        let t90 = 1.4705882352941178 * (t16 + t12);
+        let t92 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t88 - t90) * t92;
+        let minus_g1_vx_leg1 = (t90 + t88) * t92;
+        let g1_wz_leg1 = t5 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let g1_wz_leg3 = t5 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t104 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t108 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t5 * minus_g1_vx_leg2;
+        let t116 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t118 = minus_g1_vx_leg2 * t104 + minus_g1_vy_leg2 * t108 - g1_wz_leg2 * t116;
+        ::overact::guard::platform(t118, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t118, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t118, 0.2752380952380954, "kept actuators")?;
+        let t119 = 1.0 / t118;
+        let t132 = minus_g1_vx_leg4
+            * ((g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t119)
             + g1_vy_leg4
                 * ((g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
-                    * t123);
-        let t149 = torques[1]
+                    * t119);
+        let t145 = torques[1]
             + torques[3]
-                * (minus_g1_vx_leg4 * (t108 * t123) - g1_vy_leg4 * (t112 * t123)
-                    - g1_wz_leg4 * (t120 * t123));
-        let t160 = g1_vy_leg4
-            * ((minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t123)
+                * (minus_g1_vx_leg4 * (t104 * t119) - g1_vy_leg4 * (t108 * t119)
+                    - g1_wz_leg4 * (t116 * t119));
+        let t156 = g1_vy_leg4
+            * ((minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t119)
             - minus_g1_vx_leg4
-                * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t123);
+                * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t119);
         Ok([
             torques[0]
                 + torques[3]
                     * (g1_wz_leg4
                         * ((minus_g1_vx_leg2 * minus_g1_vy_leg3
-                            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t123) - t136),
-            t149,
+                            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t119) - t132),
+            t145,
             torques[2]
                 + torques[3]
-                    * (t160
+                    * (t156
                         + g1_wz_leg4
                             * ((g1_vy_leg1 * minus_g1_vx_leg2
-                                + minus_g1_vx_leg1 * minus_g1_vy_leg2) * t123)),
+                                + minus_g1_vx_leg1 * minus_g1_vy_leg2) * t119)),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4714,7 +4682,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 520 operations (236 additions, 277 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 534 intermediates.
+    /// 509 operations (229 additions, 273 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 523 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4725,252 +4693,259 @@ impl Planar4Prr {
         parameters: &[f64; 48],
     ) -> Result<[f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t21 = t9 + t5;
-        let t22 = 1.4705882352941178 * t21;
-        let t23 = t20 - t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t23 * t24;
-        let t28 = pose[0] - t3 + 0.21213203435596426;
-        let t30 = pose[1] + t7 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t32 = 0.7071067811865476 * minus_s2_leg1;
+        let t33 = t21 + t19;
+        let t34 = 1.4705882352941178 * t33;
+        let t35 = t32 - t34;
+        let t36 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t35 * t36;
+        let t46 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t42 = t30 - t28;
-        let t43 = 1.4705882352941178 * t42;
-        let t44 = t41 + t43;
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t44 * t45;
-        let t50 = pose[0] - t7 + 0.21213203435596426;
-        let t52 = pose[1] - t3 + 0.21213203435596426;
-        let t53 = t50 - t52;
-        let t61 = 8.650519031141869
-            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
-        ::overact::guard::reach(t61, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        let t48 = 0.7071067811865476 * minus_s2_leg2;
+        let t49 = 1.4705882352941178 * t18;
+        let t50 = t48 + t49;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t50 * t51;
+        let t62 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t62, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t63 = 0.7071067811865476 * minus_s2_leg3;
-        let t64 = t50 + t52;
-        let t65 = 1.4705882352941178 * t64;
-        let t66 = t63 + t65;
+        let t64 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * t14;
+        let t66 = t64 + t65;
         let t67 = 1.0 / minus_s2_leg3;
         let minus_g1_vy_leg3 = t66 * t67;
-        let t72 = pose[0] + t3 - 0.21213203435596426;
-        let t74 = pose[1] - t7 + 0.21213203435596426;
-        let t75 = t72 + t74;
-        let t83 = 8.650519031141869
-            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t83, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        let t71 = t12 + t16;
+        let t79 = 8.650519031141869
+            * (0.5 * (t71 * t71) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t79, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t79);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t85 = 0.7071067811865476 * minus_s2_leg4;
-        let t86 = t72 - t74;
-        let t87 = 1.4705882352941178 * t86;
-        let t88 = t85 + t87;
-        let t89 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t88 * t89;
-        let t93 = t41 - t43;
-        let minus_g1_vx_leg2 = t93 * t45;
-        let t96 = t22 + t20;
-        let minus_g1_vx_leg1 = t96 * t24;
-        let t100 = t65 - t63;
-        let minus_g1_vx_leg3 = t100 * t67;
-        let t104 = t87 - t85;
-        let minus_g1_vx_leg4 = t104 * t89;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        let t81 = 0.7071067811865476 * minus_s2_leg4;
+        let t82 = t12 - t16;
+        let t83 = 1.4705882352941178 * t82;
+        let t84 = t81 + t83;
+        let t85 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t84 * t85;
+        let t89 = t48 - t49;
+        let minus_g1_vx_leg2 = t89 * t51;
+        let t92 = t34 + t32;
+        let minus_g1_vx_leg1 = t92 * t36;
+        let t96 = t65 - t64;
+        let minus_g1_vx_leg3 = t96 * t67;
+        let t100 = t83 - t81;
+        let minus_g1_vx_leg4 = t100 * t85;
+        let t103 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t110 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = t103 * t111;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t103 * t112;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t120 = t7 * acceleration[2];
-        let t122 = t3 * twist[2];
-        let t123 = twist[2] * t122;
-        let t124 = acceleration[1] + t120 - t123;
-        let t126 = t3 * acceleration[2];
-        let t128 = t7 * twist[2];
-        let t129 = twist[2] * t128;
-        let t130 = acceleration[0] - t126 - t129;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let t134 = twist[0] - t122;
-        let t136 = twist[1] + t128;
-        let rate_2_leg1 = g2_vx_leg1 * t134 + g2_vx_leg1 * t136;
-        let t139 = rate_2_leg1 * rate_2_leg1;
-        let t141 = t23 * t124 - t96 * t130 - 0.34 * t139;
-        let rate_dot_1_leg1 = t24 * t141;
-        let rate_1_leg1 = g1_vy_leg1 * t136 - minus_g1_vx_leg1 * t134;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * (t130 + t124) + 0.7071067811865476 * t21 * t139);
-        let c2_leg1 = 2.079725827019258 * t21;
-        let t171 = c2_leg1 * rate_dot_1_leg1;
-        let t175 = minus_s2_leg1
-            * (parameters[6] * t139 + parameters[7] * rate_dot_2_leg1
-                + parameters[8] * t141)
+        let t116 = t7 * acceleration[2];
+        let t118 = t3 * twist[2];
+        let t119 = twist[2] * t118;
+        let t120 = acceleration[0] + t116 + t119;
+        let t121 = t3 * acceleration[2];
+        let t123 = t7 * twist[2];
+        let t124 = twist[2] * t123;
+        let t125 = acceleration[1] - t121 + t124;
+        let t126 = t120 + t125;
+        let t128 = acceleration[1] + t116 + t119;
+        let t129 = t126 - t128;
+        let t131 = acceleration[1] - t116 - t119;
+        let t132 = t129 - t131;
+        let t133 = t120 - t132;
+        let t136 = acceleration[0] + t121 - t124;
+        let t137 = t128 - t136;
+        let t138 = t125 - t137;
+        let g2_vx_leg1 = 2.079725827019258 * t36;
+        let t142 = twist[0] - t123;
+        let t144 = twist[1] + t118;
+        let rate_2_leg1 = g2_vx_leg1 * t142 + g2_vx_leg1 * t144;
+        let t147 = rate_2_leg1 * rate_2_leg1;
+        let t148 = 0.34 * t147;
+        let t149 = t35 * t133 - t92 * t138 - t148;
+        let rate_dot_1_leg1 = t36 * t149;
+        let rate_1_leg1 = g1_vy_leg1 * t144 - minus_g1_vx_leg1 * t142;
+        let c2_leg1 = 2.079725827019258 * t33;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t36
+            * (0.7071067811865476 * (t138 + t133) + t148 * c2_leg1);
+        let t178 = c2_leg1 * rate_dot_1_leg1;
+        let t182 = minus_s2_leg1
+            * (parameters[6] * t147 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t149)
             + c2_leg1
-                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t139
-                    + parameters[8] * t171);
-        let t176 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t147
+                    + parameters[8] * t178);
+        let t183 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t175;
-        let t186 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t187 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t171
-            + parameters[7] * t141 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t186;
-        let t188 = g2_vx_leg1 * t187;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
-        let t191 = twist[1] - t122;
-        let t193 = twist[0] - t128;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t191 - minus_g2_vx_leg2 * t193;
-        let t199 = acceleration[0] - t120 + t123;
-        let t201 = acceleration[1] - t126 - t129;
-        let t205 = rate_2_leg2 * rate_2_leg2;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
-            * (0.7071067811865476 * (t199 - t201) - 0.7071067811865476 * t42 * t205);
-        let c2_leg2 = 2.079725827019258 * t42;
-        let t215 = t93 * t199 + t44 * t201 + 0.34 * t205;
-        let minus_rate_dot_1_leg2 = t45 * t215;
-        let t217 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t224 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t225 = ::overact::math::signed(parameters[20], rate_2_leg2)
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t217
-                + parameters[18] * t215) - t224;
-        let t226 = minus_g2_vx_leg2 * t225;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t191;
-        let t250 = minus_s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t205
-                + parameters[19] * t215)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t182;
+        let t193 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t194 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t178
+            + parameters[7] * t149 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t193;
+        let t195 = g2_vx_leg1 * t194;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t51;
+        let t198 = twist[1] - t123;
+        let t200 = twist[0] - t118;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t198 - minus_g2_vx_leg2 * t200;
+        let c2_leg2 = 2.079725827019258 * t18;
+        let t207 = rate_2_leg2 * rate_2_leg2;
+        let t208 = 0.34 * t207;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t51
+            * (0.7071067811865476 * t132 - c2_leg2 * t208);
+        let t216 = t89 * t129 + t50 * t131 + t208;
+        let minus_rate_dot_1_leg2 = t51 * t216;
+        let t218 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t225 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t226 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t218
+                + parameters[18] * t216) - t225;
+        let t227 = minus_g2_vx_leg2 * t226;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t198;
+        let t251 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t207
+                + parameters[19] * t216)
             + c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t205
-                    + parameters[19] * t217);
-        let t251 = parameters[15]
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t207
+                    + parameters[19] * t218);
+        let t252 = parameters[15]
             - (parameters[12] * minus_rate_dot_1_leg2
                 + parameters[13] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
-            - parameters[11] * minus_rate_dot_1_leg2 - t250;
-        let t256 = acceleration[0] + t126 + t129;
-        let t259 = acceleration[1] - t120 + t123;
+            - parameters[11] * minus_rate_dot_1_leg2 - t251;
         let minus_g2_vx_leg3 = 2.079725827019258 * t67;
-        let t263 = twist[0] + t122;
-        let t265 = twist[1] - t128;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vx_leg3 * t265;
-        let t268 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t270 = t100 * t256 + t66 * t259 + 0.34 * t268;
-        let minus_rate_dot_1_leg3 = t67 * t270;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t263 + minus_g1_vy_leg3 * t265;
+        let t260 = twist[0] + t123;
+        let t262 = twist[1] - t118;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t260 + minus_g2_vx_leg3 * t262;
+        let t265 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t266 = 0.34 * t265;
+        let t267 = t96 * t120 + t66 * t125 + t266;
+        let minus_rate_dot_1_leg3 = t67 * t267;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t260 + minus_g1_vy_leg3 * t262;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
         let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
-            * (0.7071067811865476 * (t256 + t259) + 0.7071067811865476 * t64 * t268);
-        let minus_c2_leg3 = 2.079725827019258 * t64;
-        let t297 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t304 = minus_s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t268
-                + parameters[30] * t270)
+            * (0.7071067811865476 * t126 + t266 * minus_c2_leg3);
+        let t292 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t299 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t265
+                + parameters[30] * t267)
             + minus_c2_leg3
-                * (parameters[30] * t297
-                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t268));
-        let t305 = parameters[26]
+                * (parameters[30] * t292
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t265));
+        let t300 = parameters[26]
             - (parameters[23] * minus_rate_dot_1_leg3
                 + parameters[24] * minus_rate_1_leg3
                 + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
-            - parameters[22] * minus_rate_dot_1_leg3 - t304;
-        let t315 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
-        let t316 = parameters[28] * t297 - parameters[27] * minus_rate_dot_2_leg3
-            - parameters[29] * t270
-            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t315;
-        let t317 = minus_g2_vx_leg3 * t316;
-        let t320 = twist[1] + t122;
-        let t322 = twist[0] + t128;
-        let rate_1_leg4 = g1_vy_leg4 * t320 - minus_g1_vx_leg4 * t322;
-        let t327 = acceleration[0] + t120 - t123;
-        let t330 = acceleration[1] + t126 + t129;
-        let g2_vx_leg4 = 2.079725827019258 * t89;
-        let rate_2_leg4 = g2_vx_leg4 * t322 - g2_vx_leg4 * t320;
-        let t337 = rate_2_leg4 * rate_2_leg4;
-        let t339 = t104 * t327 - t88 * t330 + 0.34 * t337;
-        let minus_rate_dot_1_leg4 = t89 * t339;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
-            * (0.7071067811865476 * (t330 - t327) - 0.7071067811865476 * t86 * t337);
-        let c2_leg4 = 2.079725827019258 * t86;
-        let t365 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t369 = minus_s2_leg4
-            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t337
-                + parameters[41] * t339)
+            - parameters[22] * minus_rate_dot_1_leg3 - t299;
+        let t310 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
+        let t311 = parameters[28] * t292 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t267
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t310;
+        let t312 = minus_g2_vx_leg3 * t311;
+        let t315 = twist[1] + t123;
+        let t317 = twist[0] + t118;
+        let rate_1_leg4 = g1_vy_leg4 * t315 - minus_g1_vx_leg4 * t317;
+        let g2_vx_leg4 = 2.079725827019258 * t85;
+        let rate_2_leg4 = g2_vx_leg4 * t317 - g2_vx_leg4 * t315;
+        let t328 = rate_2_leg4 * rate_2_leg4;
+        let t329 = 0.34 * t328;
+        let t330 = t100 * t136 - t84 * t128 + t329;
+        let minus_rate_dot_1_leg4 = t85 * t330;
+        let c2_leg4 = 2.079725827019258 * t82;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t85
+            * (0.7071067811865476 * t137 - t329 * c2_leg4);
+        let t354 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t358 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t328
+                + parameters[41] * t330)
             + c2_leg4
-                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t337
-                    + parameters[41] * t365);
-        let t370 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
+                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t328
+                    + parameters[41] * t354);
+        let t359 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            - parameters[33] * minus_rate_dot_1_leg4 - t369;
-        let t380 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
-        let t381 = ::overact::math::signed(parameters[42], rate_2_leg4)
-            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t365
-                + parameters[40] * t339) - t380;
-        let t382 = g2_vx_leg4 * t381;
-        let t384 = g1_vy_leg1 * t176 + t188 + t226 - minus_g1_vy_leg2 * t251
-            - (minus_g1_vy_leg3 * t305 + t317) + g1_vy_leg4 * t370 - t382;
-        let t387 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t389 = twist[2] * twist[2];
-        let t393 = parameters[47] * t387
-            - (parameters[45] * t389 + acceleration[2] * parameters[46]);
-        let t400 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t402 = acceleration[2] * parameters[45] - parameters[46] * t389
-            + parameters[47] * t400;
-        let t416 = t188 - minus_g1_vx_leg1 * t176 - (minus_g1_vx_leg2 * t251 + t226)
-            - (minus_g1_vx_leg3 * t305 + t317) + t382 - minus_g1_vx_leg4 * t370;
-        let t420 = t416 + c_phi * t393 - s_phi * t402;
-        let t422 = t384 + s_phi * t393 + c_phi * t402 - t420 * t116;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t449 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            - parameters[33] * minus_rate_dot_1_leg4 - t358;
+        let t369 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t370 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t354
+                + parameters[40] * t330) - t369;
+        let t371 = g2_vx_leg4 * t370;
+        let t373 = g1_vy_leg1 * t183 + t195 + t227 - minus_g1_vy_leg2 * t252
+            - (minus_g1_vy_leg3 * t300 + t312) + g1_vy_leg4 * t359 - t371;
+        let t375 = twist[2] * twist[2];
+        let t378 = s_phi * t375 - c_phi * acceleration[2];
+        let t382 = c_phi * t375 + s_phi * acceleration[2];
+        let t397 = t195 - minus_g1_vx_leg1 * t183 - (minus_g1_vx_leg2 * t252 + t227)
+            - (minus_g1_vx_leg3 * t300 + t312) + t371 - minus_g1_vx_leg4 * t359;
+        let t403 = t397 + parameters[46] * t378 - parameters[45] * t382
+            + acceleration[0] * parameters[47];
+        let t405 = t373 + acceleration[1] * parameters[47]
+            - (parameters[45] * t378 + parameters[46] * t382) - t403 * t112;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t432 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t450 = t449 * t115;
-        let t452 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t450;
-        let t453 = t452 * t119;
-        let t464 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t449 * t450
-            - t452 * t453;
-        ::overact::guard::platform(t464, 0.02560000000000001, "actuators")?;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
-        let t490 = g1_wz_leg1 * t176 + g2_wz_leg1 * t187 + t186 + g1_wz_leg2 * t251
-            + g2_wz_leg2 * t225 + t224 + g1_wz_leg3 * t305 + g2_wz_leg3 * t316 + t315;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
-        let t505 = t490 + g1_wz_leg4 * t370 + g2_wz_leg4 * t381 + t380
-            + acceleration[2] * parameters[44] + parameters[45] * t400
-            - parameters[46] * t387;
-        let t510 = (t505 + t420 * t450 - t453 * t422) / t464;
-        let t512 = t119 * t422 - t453 * t510;
-        let t518 = t420 * t115 - t116 * t512 + t450 * t510;
+        let t433 = t432 * t111;
+        let t435 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t103 * t433;
+        let t436 = t435 * t115;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t36 - t6 * t36);
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t51 - t6 * t51);
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t67 - t6 * t67);
+        let t462 = g1_wz_leg1 * t183 + g2_wz_leg1 * t194 + t193 + g1_wz_leg2 * t252
+            + g2_wz_leg2 * t226 + t225 + g1_wz_leg3 * t300 + g2_wz_leg3 * t311 + t310;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t85 - t6 * t85);
+        let t482 = acceleration[2] * parameters[44]
+            + parameters[45] * (c_phi * acceleration[1] - s_phi * acceleration[0])
+            - parameters[46] * (s_phi * acceleration[1] + c_phi * acceleration[0]);
+        let t487 = t462 + g1_wz_leg4 * t359 + g2_wz_leg4 * t370 + t369 + t482
+            + t403 * t433 - t436 * t405;
+        let t498 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t432 * t433
+            - t435 * t436;
+        ::overact::guard::platform(t498, 0.02560000000000001, "actuators")?;
+        let t499 = t487 / t498;
+        let t501 = t115 * t405 - t436 * t499;
+        let t507 = t403 * t111 - t112 * t501 + t433 * t499;
         Ok([
-            g1_vy_leg1 * t512 - minus_g1_vx_leg1 * t518 + g1_wz_leg1 * t510,
-            g1_wz_leg2 * t510 - (minus_g1_vx_leg2 * t518 + minus_g1_vy_leg2 * t512),
-            g1_wz_leg3 * t510 - (minus_g1_vx_leg3 * t518 + minus_g1_vy_leg3 * t512),
-            g1_vy_leg4 * t512 - minus_g1_vx_leg4 * t518 + g1_wz_leg4 * t510,
+            g1_vy_leg1 * t501 - minus_g1_vx_leg1 * t507 + g1_wz_leg1 * t499,
+            g1_wz_leg2 * t499 - (minus_g1_vx_leg2 * t507 + minus_g1_vy_leg2 * t501),
+            g1_wz_leg3 * t499 - (minus_g1_vx_leg3 * t507 + minus_g1_vy_leg3 * t501),
+            g1_vy_leg4 * t501 - minus_g1_vx_leg4 * t507 + g1_wz_leg4 * t499,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4984,7 +4959,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 462 operations (201 additions, 254 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 12 signs, 480 intermediates.
+    /// 457 operations (198 additions, 252 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 12 signs, 475 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5007,105 +4982,108 @@ impl Planar4Prr {
         let t3 = 1.0 / s2_leg1;
         let t4 = 0.7071067811865476 * t3;
         let g1_vx_leg1 = t2 * t4;
-        let t8 = s_phi + c_phi;
+        let t8 = c_phi - s_phi;
         let t9 = 0.05656854249492381 * t8;
         let t10 = t9 * acceleration[2];
-        let t12 = c_phi - s_phi;
+        let t12 = s_phi + c_phi;
         let t13 = 0.05656854249492381 * t12;
         let t14 = t13 * twist[2];
         let t15 = twist[2] * t14;
-        let t17 = 0.2404163056034262 * t2;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
+        let t16 = acceleration[1] - t10 + t15;
+        let t17 = t13 * acceleration[2];
         let t19 = t9 * twist[2];
-        let t20 = twist[0] - t19;
-        let t22 = twist[1] + t14;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t20 + minus_g2_vx_leg1 * t22;
-        let t25 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t27 = acceleration[0] - t10 - t15 + t17 * t25;
-        let t29 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t29 * t4;
-        let t31 = t13 * acceleration[2];
-        let t33 = twist[2] * t19;
-        let t35 = 0.2404163056034262 * t29;
-        let t37 = acceleration[1] + t31 - t33 + t35 * t25;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t37;
-        let rate_1_leg1 = g1_vx_leg1 * t20 + g1_vy_leg1 * t22;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t27 + minus_g2_vx_leg1 * t37;
-        let t57 = s2_leg1 * rate_dot_1_leg1;
-        let t61 = c2_leg1 * rate_dot_1_leg1;
-        let t68 = s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t25
-                + parameters[8] * t57)
+        let t20 = twist[2] * t19;
+        let t21 = acceleration[1] + t17 + t20;
+        let t23 = acceleration[0] + t10 - t15;
+        let t24 = t21 - t23;
+        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
+        let t28 = twist[0] - t14;
+        let t30 = twist[1] + t19;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t28 + minus_g2_vx_leg1 * t30;
+        let t33 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t35 = t16 - t24 + 0.2404163056034262 * t2 * t33;
+        let t37 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t37 * t4;
+        let t40 = acceleration[0] + t17 + t20;
+        let t41 = t40 + t16;
+        let t42 = t41 - t21;
+        let t44 = acceleration[1] - t17 - t20;
+        let t45 = t42 - t44;
+        let t49 = t40 - t45 + 0.2404163056034262 * t37 * t33;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t35 + g1_vy_leg1 * t49;
+        let rate_1_leg1 = g1_vx_leg1 * t28 + g1_vy_leg1 * t30;
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * t35 + minus_g2_vx_leg1 * t49;
+        let t69 = s2_leg1 * rate_dot_1_leg1;
+        let t73 = c2_leg1 * rate_dot_1_leg1;
+        let t80 = s2_leg1
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t33
+                + parameters[8] * t69)
             + c2_leg1
-                * (parameters[8] * t61
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t25));
-        let t69 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[8] * t73
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t33));
+        let t81 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t68;
-        let t79 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
-        let t80 = parameters[6] * t61 - parameters[5] * minus_rate_dot_2_leg1
-            - parameters[7] * t57
-            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t79;
-        let t81 = minus_g2_vx_leg1 * t80;
-        let t85 = 1.0 / s2_leg2;
-        let g2_vx_leg2 = 2.079725827019258 * t85;
-        let t89 = acceleration[0] - t31 + t33;
-        let t91 = acceleration[1] - t10 - t15;
-        let t94 = twist[0] - t14;
-        let t96 = twist[1] - t19;
-        let rate_2_leg2 = g2_vx_leg2 * t94 - g2_vx_leg2 * t96;
-        let t99 = rate_2_leg2 * rate_2_leg2;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t85
-            * (0.7071067811865476 * (t89 - t91) - t99 * (0.34 * c2_leg2));
-        let t105 = 0.7071067811865476 * t85;
-        let t108 = t2 * t17 + t29 * t35;
-        let t110 = c2_leg2 + s2_leg2;
-        let t112 = s2_leg2 - c2_leg2;
-        let rate_dot_1_leg2 = t105 * (t108 * t99 - (t110 * t89 + t112 * t91));
-        let t117 = c2_leg2 * rate_dot_1_leg2;
-        let t120 = s2_leg2 * rate_dot_1_leg2;
-        let t126 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t127 = parameters[16] * rate_dot_2_leg2 + parameters[17] * t117
-            - parameters[18] * t120
-            + ::overact::math::signed(parameters[20], rate_2_leg2) - t126;
-        let t128 = g2_vx_leg2 * t127;
-        let minus_g1_vx_leg2 = t110 * t105;
-        let minus_g1_vy_leg2 = t112 * t105;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t94 + minus_g1_vy_leg2 * t96;
-        let t154 = s2_leg2
-            * (parameters[19] * t120
-                - (parameters[17] * t99 + parameters[18] * rate_dot_2_leg2))
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t80;
+        let t91 = ::overact::math::signed(parameters[10], minus_rate_2_leg1 + twist[2]);
+        let t92 = parameters[6] * t73 - parameters[5] * minus_rate_dot_2_leg1
+            - parameters[7] * t69
+            - ::overact::math::signed(parameters[9], minus_rate_2_leg1) - t91;
+        let t93 = minus_g2_vx_leg1 * t92;
+        let t97 = 1.0 / s2_leg2;
+        let g2_vx_leg2 = 2.079725827019258 * t97;
+        let t101 = twist[0] - t19;
+        let t103 = twist[1] - t14;
+        let rate_2_leg2 = g2_vx_leg2 * t101 - g2_vx_leg2 * t103;
+        let t106 = rate_2_leg2 * rate_2_leg2;
+        let rate_dot_2_leg2 = 2.9411764705882355 * t97
+            * (0.7071067811865476 * t45 - t106 * (0.34 * c2_leg2));
+        let t112 = 0.7071067811865476 * t97;
+        let t113 = 0.2404163056034262 + 0.2404163056034262;
+        let t115 = c2_leg2 + s2_leg2;
+        let t117 = s2_leg2 - c2_leg2;
+        let rate_dot_1_leg2 = t112 * (t113 * t106 - (t115 * t42 + t117 * t44));
+        let t122 = c2_leg2 * rate_dot_1_leg2;
+        let t125 = s2_leg2 * rate_dot_1_leg2;
+        let t131 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t132 = parameters[16] * rate_dot_2_leg2 + parameters[17] * t122
+            - parameters[18] * t125
+            + ::overact::math::signed(parameters[20], rate_2_leg2) - t131;
+        let t133 = g2_vx_leg2 * t132;
+        let minus_g1_vx_leg2 = t115 * t112;
+        let minus_g1_vy_leg2 = t117 * t112;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t101 + minus_g1_vy_leg2 * t103;
+        let t159 = s2_leg2
+            * (parameters[19] * t125
+                - (parameters[17] * t106 + parameters[18] * rate_dot_2_leg2))
             + c2_leg2
-                * (parameters[17] * rate_dot_2_leg2 - parameters[18] * t99
-                    + parameters[19] * t117);
-        let t155 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
+                * (parameters[17] * rate_dot_2_leg2 - parameters[18] * t106
+                    + parameters[19] * t122);
+        let t160 = parameters[11] * rate_dot_1_leg2 + parameters[12] * rate_dot_1_leg2
             - parameters[13] * minus_rate_1_leg2
             - ::overact::math::signed(parameters[14], minus_rate_1_leg2) + parameters[15]
-            + t154;
-        let t161 = s2_leg3 - c2_leg3;
-        let t162 = 1.0 / s2_leg3;
-        let t163 = 0.7071067811865476 * t162;
-        let g1_vx_leg3 = t161 * t163;
-        let t165 = twist[0] + t19;
-        let t167 = s2_leg3 + c2_leg3;
-        let minus_g1_vy_leg3 = t167 * t163;
-        let t169 = twist[1] - t14;
-        let rate_1_leg3 = g1_vx_leg3 * t165 - minus_g1_vy_leg3 * t169;
-        let t174 = acceleration[1] - t31 + t33;
-        let t177 = acceleration[0] + t10 + t15;
-        let g2_vx_leg3 = 2.079725827019258 * t162;
-        let rate_2_leg3 = g2_vx_leg3 * t165 + g2_vx_leg3 * t169;
-        let t184 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t163 * (t167 * t174 - t161 * t177 - t108 * t184);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t162
-            * (t184 * (0.34 * c2_leg3) - 0.7071067811865476 * (t177 + t174));
+            + t159;
+        let t166 = s2_leg3 - c2_leg3;
+        let t167 = 1.0 / s2_leg3;
+        let t168 = 0.7071067811865476 * t167;
+        let g1_vx_leg3 = t166 * t168;
+        let t170 = twist[0] + t14;
+        let t172 = s2_leg3 + c2_leg3;
+        let minus_g1_vy_leg3 = t172 * t168;
+        let t174 = twist[1] - t19;
+        let rate_1_leg3 = g1_vx_leg3 * t170 - minus_g1_vy_leg3 * t174;
+        let g2_vx_leg3 = 2.079725827019258 * t167;
+        let rate_2_leg3 = g2_vx_leg3 * t170 + g2_vx_leg3 * t174;
+        let t185 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t168 * (t172 * t16 - t166 * t40 - t113 * t185);
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t167
+            * (t185 * (0.34 * c2_leg3) - 0.7071067811865476 * t41);
         let t205 = s2_leg3 * minus_rate_dot_1_leg3;
         let t212 = c2_leg3 * minus_rate_dot_1_leg3;
         let t216 = s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t184
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t185
                 - parameters[30] * t205)
             - c2_leg3
-                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t184
+                * (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t185
                     + parameters[30] * t212);
         let t217 = parameters[24] * rate_1_leg3 - parameters[23] * minus_rate_dot_1_leg3
             + ::overact::math::signed(parameters[25], rate_1_leg3) + parameters[26]
@@ -5119,93 +5097,91 @@ impl Planar4Prr {
         let t235 = 1.0 / s2_leg4;
         let t236 = 0.7071067811865476 * t235;
         let g1_vx_leg4 = t234 * t236;
-        let t239 = acceleration[0] + t31 - t33;
-        let t241 = c2_leg4 - s2_leg4;
-        let t243 = acceleration[1] + t10 + t15;
+        let t239 = c2_leg4 - s2_leg4;
         let minus_g2_vx_leg4 = 2.079725827019258 * t235;
-        let t247 = twist[1] + t19;
-        let t249 = twist[0] + t14;
-        let rate_2_leg4 = minus_g2_vx_leg4 * t247 - minus_g2_vx_leg4 * t249;
-        let t252 = rate_2_leg4 * rate_2_leg4;
-        let rate_dot_1_leg4 = t236 * (t234 * t239 - t241 * t243 + t108 * t252);
-        let minus_g1_vy_leg4 = t241 * t236;
-        let rate_1_leg4 = g1_vx_leg4 * t249 - minus_g1_vy_leg4 * t247;
-        let t268 = s2_leg4 * rate_dot_1_leg4;
+        let t243 = twist[1] + t14;
+        let t245 = twist[0] + t19;
+        let rate_2_leg4 = minus_g2_vx_leg4 * t243 - minus_g2_vx_leg4 * t245;
+        let t248 = rate_2_leg4 * rate_2_leg4;
+        let rate_dot_1_leg4 = t236 * (t234 * t23 - t239 * t21 + t113 * t248);
+        let minus_g1_vy_leg4 = t239 * t236;
+        let rate_1_leg4 = g1_vx_leg4 * t245 - minus_g1_vy_leg4 * t243;
+        let t264 = s2_leg4 * rate_dot_1_leg4;
         let rate_dot_2_leg4 = 2.9411764705882355 * t235
-            * (0.7071067811865476 * (t243 - t239) - t252 * (0.34 * c2_leg4));
-        let t285 = c2_leg4 * rate_dot_1_leg4;
-        let t289 = s2_leg4
-            * (parameters[41] * t268
-                - (parameters[39] * t252 + parameters[40] * rate_dot_2_leg4))
+            * (0.7071067811865476 * t24 - t248 * (0.34 * c2_leg4));
+        let t280 = c2_leg4 * rate_dot_1_leg4;
+        let t284 = s2_leg4
+            * (parameters[41] * t264
+                - (parameters[39] * t248 + parameters[40] * rate_dot_2_leg4))
             + c2_leg4
-                * (parameters[39] * rate_dot_2_leg4 - parameters[40] * t252
-                    + parameters[41] * t285);
-        let t290 = parameters[33] * rate_dot_1_leg4 + parameters[34] * rate_dot_1_leg4
+                * (parameters[39] * rate_dot_2_leg4 - parameters[40] * t248
+                    + parameters[41] * t280);
+        let t285 = parameters[33] * rate_dot_1_leg4 + parameters[34] * rate_dot_1_leg4
             + parameters[35] * rate_1_leg4
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            + t289;
-        let t300 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
-        let t301 = parameters[38] * rate_dot_2_leg4 + parameters[39] * t285
-            - parameters[40] * t268
-            + ::overact::math::signed(parameters[42], rate_2_leg4) - t300;
-        let t302 = minus_g2_vx_leg4 * t301;
-        let t304 = g1_vx_leg1 * t69 - t81 + t128 - minus_g1_vx_leg2 * t155
-            + g1_vx_leg3 * t217 + t229 + g1_vx_leg4 * t290 - t302;
-        let t307 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t309 = twist[2] * twist[2];
-        let t313 = parameters[47] * t307
-            - (parameters[45] * t309 + acceleration[2] * parameters[46]);
-        let t320 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t322 = acceleration[2] * parameters[45] - parameters[46] * t309
-            + parameters[47] * t320;
-        let t325 = t304 + c_phi * t313 - s_phi * t322;
-        let t332 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + t284;
+        let t295 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t296 = parameters[38] * rate_dot_2_leg4 + parameters[39] * t280
+            - parameters[40] * t264
+            + ::overact::math::signed(parameters[42], rate_2_leg4) - t295;
+        let t297 = minus_g2_vx_leg4 * t296;
+        let t299 = g1_vx_leg1 * t81 - t93 + t133 - minus_g1_vx_leg2 * t160
+            + g1_vx_leg3 * t217 + t229 + g1_vx_leg4 * t285 - t297;
+        let t300 = twist[2] * twist[2];
+        let t303 = s_phi * t300 - c_phi * acceleration[2];
+        let t307 = c_phi * t300 + s_phi * acceleration[2];
+        let t312 = t299 + parameters[46] * t303 - parameters[45] * t307
+            + acceleration[0] * parameters[47];
+        let t319 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + g1_vx_leg4 * g1_vx_leg4;
-        ::overact::guard::platform(t332, 3.4404761904750325, "actuators")?;
-        let t333 = 1.0 / t332;
-        let t341 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t319, 3.4404761904750325, "actuators")?;
+        let t320 = 1.0 / t319;
+        let t328 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - g1_vx_leg3 * minus_g1_vy_leg3 - g1_vx_leg4 * minus_g1_vy_leg4;
-        let t342 = t341 * t333;
-        let t351 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t329 = t328 * t320;
+        let t338 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t341 * t342;
-        ::overact::guard::platform(t351, 3.440476190475036, "actuators")?;
-        let t352 = 1.0 / t351;
-        let t363 = g1_vy_leg1 * t69 - t81 - (minus_g1_vy_leg2 * t155 + t128) + t229
-            - minus_g1_vy_leg3 * t217 + t302 - minus_g1_vy_leg4 * t290;
-        let t369 = t363 + s_phi * t313 + c_phi * t322 - t325 * t342;
-        let g1_wz_leg1 = g1_vy_leg1 * t13 - g1_vx_leg1 * t9;
-        let g1_wz_leg2 = t9 * minus_g1_vy_leg2 + t13 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t13 * minus_g1_vy_leg3 + t9 * g1_vx_leg3;
-        let g1_wz_leg4 = t13 * g1_vx_leg4 - t9 * minus_g1_vy_leg4;
-        let t396 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
+            - t328 * t329;
+        ::overact::guard::platform(t338, 3.440476190475036, "actuators")?;
+        let t339 = 1.0 / t338;
+        let t350 = g1_vy_leg1 * t81 - t93 - (minus_g1_vy_leg2 * t160 + t133) + t229
+            - minus_g1_vy_leg3 * t217 + t297 - minus_g1_vy_leg4 * t285;
+        let t358 = t350 + acceleration[1] * parameters[47]
+            - (parameters[45] * t303 + parameters[46] * t307) - t312 * t329;
+        let g1_wz_leg1 = g1_vy_leg1 * t9 - g1_vx_leg1 * t13;
+        let g1_wz_leg2 = t13 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 + t13 * g1_vx_leg3;
+        let g1_wz_leg4 = t9 * g1_vx_leg4 - t13 * minus_g1_vy_leg4;
+        let t385 = g1_vx_leg1 * g1_wz_leg1 - minus_g1_vx_leg2 * g1_wz_leg2
             + g1_vx_leg3 * g1_wz_leg3 + g1_vx_leg4 * g1_wz_leg4;
-        let t397 = t396 * t333;
-        let t399 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+        let t386 = t385 * t320;
+        let t388 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
             - minus_g1_vy_leg3 * g1_wz_leg3 - minus_g1_vy_leg4 * g1_wz_leg4
-            - t341 * t397;
-        let t400 = t399 * t352;
-        let t411 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t396 * t397
-            - t399 * t400;
-        ::overact::guard::platform(t411, 0.02560000000000001, "actuators")?;
-        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t8 - t3 * t12);
-        let g2_wz_leg2 = 0.11764705882352941 * (t8 * t85 - t12 * t85);
-        let g2_wz_leg3 = 0.11764705882352941 * (t8 * t162 - t12 * t162);
-        let t437 = g1_wz_leg1 * t69 + g2_wz_leg1 * t80 + t79 + g1_wz_leg2 * t155
-            + g2_wz_leg2 * t127 + t126 + g1_wz_leg3 * t217 + g2_wz_leg3 * t228 + t227;
-        let g2_wz_leg4 = 0.11764705882352941 * (t8 * t235 - t12 * t235);
-        let t452 = t437 + g1_wz_leg4 * t290 + g2_wz_leg4 * t301 + t300
-            + acceleration[2] * parameters[44] + parameters[45] * t320
-            - parameters[46] * t307;
-        let t457 = (t452 - t325 * t397 - t400 * t369) / t411;
-        let t459 = t352 * t369 - t400 * t457;
-        let t463 = t325 * t333 - t342 * t459 - t397 * t457;
+            - t328 * t386;
+        let t389 = t388 * t339;
+        let g2_wz_leg1 = 0.11764705882352941 * (t3 * t12 - t3 * t8);
+        let g2_wz_leg2 = 0.11764705882352941 * (t12 * t97 - t8 * t97);
+        let g2_wz_leg3 = 0.11764705882352941 * (t12 * t167 - t8 * t167);
+        let t415 = g1_wz_leg1 * t81 + g2_wz_leg1 * t92 + t91 + g1_wz_leg2 * t160
+            + g2_wz_leg2 * t132 + t131 + g1_wz_leg3 * t217 + g2_wz_leg3 * t228 + t227;
+        let g2_wz_leg4 = 0.11764705882352941 * (t12 * t235 - t8 * t235);
+        let t435 = acceleration[2] * parameters[44]
+            + parameters[45] * (c_phi * acceleration[1] - s_phi * acceleration[0])
+            - parameters[46] * (s_phi * acceleration[1] + c_phi * acceleration[0]);
+        let t440 = t415 + g1_wz_leg4 * t285 + g2_wz_leg4 * t296 + t295 + t435
+            - t312 * t386 - t389 * t358;
+        let t451 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t385 * t386
+            - t388 * t389;
+        ::overact::guard::platform(t451, 0.02560000000000001, "actuators")?;
+        let t452 = t440 / t451;
+        let t454 = t339 * t358 - t389 * t452;
+        let t458 = t312 * t320 - t329 * t454 - t386 * t452;
         Ok([
-            g1_vx_leg1 * t463 + g1_vy_leg1 * t459 + g1_wz_leg1 * t457,
-            g1_wz_leg2 * t457 - (minus_g1_vx_leg2 * t463 + minus_g1_vy_leg2 * t459),
-            g1_vx_leg3 * t463 - minus_g1_vy_leg3 * t459 + g1_wz_leg3 * t457,
-            g1_vx_leg4 * t463 - minus_g1_vy_leg4 * t459 + g1_wz_leg4 * t457,
+            g1_vx_leg1 * t458 + g1_vy_leg1 * t454 + g1_wz_leg1 * t452,
+            g1_wz_leg2 * t452 - (minus_g1_vx_leg2 * t458 + minus_g1_vy_leg2 * t454),
+            g1_vx_leg3 * t458 - minus_g1_vy_leg3 * t454 + g1_wz_leg3 * t452,
+            g1_vx_leg4 * t458 - minus_g1_vy_leg4 * t454 + g1_wz_leg4 * t452,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5219,7 +5195,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 617 operations (278 additions, 332 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 631 intermediates.
+    /// 606 operations (271 additions, 328 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 620 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5232,298 +5208,301 @@ impl Planar4Prr {
     ) -> Result<[f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t21 = t9 + t5;
-        let t22 = 1.4705882352941178 * t21;
-        let t23 = t20 - t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t23 * t24;
-        let t28 = pose[0] - t3 + 0.21213203435596426;
-        let t30 = pose[1] + t7 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t32 = 0.7071067811865476 * minus_s2_leg1;
+        let t33 = t21 + t19;
+        let t34 = 1.4705882352941178 * t33;
+        let t35 = t32 - t34;
+        let t36 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t35 * t36;
+        let t46 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t42 = t30 - t28;
-        let t43 = 1.4705882352941178 * t42;
-        let t44 = t41 + t43;
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t44 * t45;
-        let t50 = pose[0] - t7 + 0.21213203435596426;
-        let t52 = pose[1] - t3 + 0.21213203435596426;
-        let t53 = t50 - t52;
-        let t61 = 8.650519031141869
-            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
-        ::overact::guard::reach(t61, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        let t48 = 0.7071067811865476 * minus_s2_leg2;
+        let t49 = 1.4705882352941178 * t18;
+        let t50 = t48 + t49;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t50 * t51;
+        let t62 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t62, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t63 = 0.7071067811865476 * minus_s2_leg3;
-        let t64 = t50 + t52;
-        let t65 = 1.4705882352941178 * t64;
-        let t66 = t63 + t65;
+        let t64 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * t14;
+        let t66 = t64 + t65;
         let t67 = 1.0 / minus_s2_leg3;
         let minus_g1_vy_leg3 = t66 * t67;
-        let t72 = pose[0] + t3 - 0.21213203435596426;
-        let t74 = pose[1] - t7 + 0.21213203435596426;
-        let t75 = t72 + t74;
-        let t83 = 8.650519031141869
-            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t83, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        let t71 = t12 + t16;
+        let t79 = 8.650519031141869
+            * (0.5 * (t71 * t71) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t79, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t79);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t85 = 0.7071067811865476 * minus_s2_leg4;
-        let t86 = t72 - t74;
-        let t87 = 1.4705882352941178 * t86;
-        let t88 = t85 + t87;
-        let t89 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t88 * t89;
-        let t93 = t41 - t43;
-        let minus_g1_vx_leg2 = t93 * t45;
-        let t96 = t22 + t20;
-        let minus_g1_vx_leg1 = t96 * t24;
-        let t100 = t65 - t63;
-        let minus_g1_vx_leg3 = t100 * t67;
-        let t104 = t87 - t85;
-        let minus_g1_vx_leg4 = t104 * t89;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        let t81 = 0.7071067811865476 * minus_s2_leg4;
+        let t82 = t12 - t16;
+        let t83 = 1.4705882352941178 * t82;
+        let t84 = t81 + t83;
+        let t85 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t84 * t85;
+        let t89 = t48 - t49;
+        let minus_g1_vx_leg2 = t89 * t51;
+        let t92 = t34 + t32;
+        let minus_g1_vx_leg1 = t92 * t36;
+        let t96 = t65 - t64;
+        let minus_g1_vx_leg3 = t96 * t67;
+        let t100 = t83 - t81;
+        let minus_g1_vx_leg4 = t100 * t85;
+        let t103 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t110 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = t103 * t111;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t103 * t112;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t145 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t134 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t146 = t145 * t115;
-        let t157 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t146;
-        let t158 = t157 * t119;
-        let t160 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t145 * t146
-            - t157 * t158;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t160, 0.02560000000000001, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t175 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t135 = t134 * t111;
+        let t153 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t103 * t135;
+        let t154 = t153 * t115;
+        let t156 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t134 * t135
+            - t153 * t154;
+        ::overact::guard::platform(t156, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t156, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t156, 0.02560000000000001, "actuators")?;
+        let t157 = 1.0 / t156;
+        let t171 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t186 = g1_vy_leg1 * actuator_velocities[0]
+        let t182 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t175 * t116;
-        let t188 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t171 * t112;
+        let t184 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t175 * t146 - t158 * t186;
-        let rate_3_leg1 = t161 * t188;
-        let t190 = t7 * rate_3_leg1;
-        let t191 = rate_3_leg1 * t190;
-        let t193 = t3 * rate_3_leg1;
-        let t194 = rate_3_leg1 * t193;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let t202 = t119 * t186 - t158 * rate_3_leg1;
-        let t205 = t146 * rate_3_leg1 - (t175 * t115 + t116 * t202);
-        let t206 = t205 - t193;
-        let t208 = t202 + t190;
-        let rate_2_leg1 = g2_vx_leg1 * t206 + g2_vx_leg1 * t208;
-        let t211 = rate_2_leg1 * rate_2_leg1;
-        let t212 = 0.34 * t211;
-        let rate_dot_1_leg1 = t24 * (t96 * t191 - t23 * t194 - t212);
-        let t215 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
-        let t221 = t202 - t193;
-        let t223 = t205 - t190;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t221 - minus_g2_vx_leg2 * t223;
-        let t226 = rate_2_leg2 * rate_2_leg2;
-        let t227 = 0.34 * t226;
-        let minus_rate_dot_1_leg2 = t45 * (t93 * t194 - t44 * t191 + t227);
-        let t230 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+            + g1_wz_leg4 * actuator_velocities[3] - t171 * t135 - t154 * t182;
+        let rate_3_leg1 = t157 * t184;
+        let t186 = t3 * rate_3_leg1;
+        let t187 = rate_3_leg1 * t186;
+        let t189 = t7 * rate_3_leg1;
+        let t190 = rate_3_leg1 * t189;
+        let g2_vx_leg1 = 2.079725827019258 * t36;
+        let t198 = t115 * t182 - t154 * rate_3_leg1;
+        let t201 = t135 * rate_3_leg1 - (t171 * t111 + t112 * t198);
+        let t202 = t201 - t189;
+        let t204 = t198 + t186;
+        let rate_2_leg1 = g2_vx_leg1 * t202 + g2_vx_leg1 * t204;
+        let t207 = rate_2_leg1 * rate_2_leg1;
+        let t208 = 0.34 * t207;
+        let rate_dot_1_leg1 = t36 * (t92 * t187 - t35 * t190 - t208);
+        let t211 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t51;
+        let t217 = t198 - t189;
+        let t219 = t201 - t186;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t217 - minus_g2_vx_leg2 * t219;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.34 * t222;
+        let minus_rate_dot_1_leg2 = t51 * (t89 * t190 - t50 * t187 + t223);
+        let t226 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
         let minus_g2_vx_leg3 = 2.079725827019258 * t67;
-        let t237 = t205 + t193;
-        let t239 = t202 - t190;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vx_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t243 = 0.34 * t242;
-        let minus_rate_dot_1_leg3 = t67 * (t100 * t191 + t66 * t194 + t243);
-        let t246 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t89;
-        let t250 = t205 + t190;
-        let t252 = t202 + t193;
-        let rate_2_leg4 = g2_vx_leg4 * t250 - g2_vx_leg4 * t252;
-        let t255 = rate_2_leg4 * rate_2_leg4;
-        let t256 = 0.34 * t255;
-        let minus_rate_dot_1_leg4 = t89 * (t256 - (t104 * t194 + t88 * t191));
-        let t262 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t271 = minus_g1_vx_leg1 * t215 + minus_g1_vx_leg2 * t230
-            + minus_g1_vx_leg3 * t246 + minus_g1_vx_leg4 * t262;
-        let t273 = g1_vy_leg1 * t215 - minus_g1_vy_leg2 * t230 - minus_g1_vy_leg3 * t246
-            + g1_vy_leg4 * t262 + t116 * t271;
-        let t285 = g1_wz_leg1 * t215 + g1_wz_leg2 * t230 + g1_wz_leg3 * t246
-            + g1_wz_leg4 * t262 - t146 * t271 - t158 * t273;
-        let rate_dot_3_leg1 = t161 * t285;
-        let t288 = t119 * t273 - t158 * rate_dot_3_leg1;
-        let t289 = t7 * rate_dot_3_leg1;
-        let t291 = t288 + t289 - t194;
-        let t297 = t146 * rate_dot_3_leg1 - (t115 * t271 + t116 * t288);
-        let t298 = t3 * rate_dot_3_leg1;
-        let t300 = t297 - t298 - t191;
-        let t303 = t23 * t291 - t96 * t300 - t212;
-        let rate_dot_1_leg1_2 = t24 * t303;
-        let rate_1_leg1 = g1_vy_leg1 * t208 - minus_g1_vx_leg1 * t206;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * (t300 + t291) + 0.7071067811865476 * t21 * t211);
-        let c2_leg1 = 2.079725827019258 * t21;
-        let t333 = c2_leg1 * rate_dot_1_leg1_2;
-        let t337 = minus_s2_leg1
-            * (t211 * parameters[6] + parameters[7] * rate_dot_2_leg1
-                + parameters[8] * t303)
+        let t233 = t201 + t189;
+        let t235 = t198 - t186;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t233 + minus_g2_vx_leg3 * t235;
+        let t238 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t239 = 0.34 * t238;
+        let minus_rate_dot_1_leg3 = t67 * (t96 * t187 + t66 * t190 + t239);
+        let t242 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t85;
+        let t246 = t201 + t186;
+        let t248 = t198 + t189;
+        let rate_2_leg4 = g2_vx_leg4 * t246 - g2_vx_leg4 * t248;
+        let t251 = rate_2_leg4 * rate_2_leg4;
+        let t252 = 0.34 * t251;
+        let minus_rate_dot_1_leg4 = t85 * (t252 - (t100 * t190 + t84 * t187));
+        let t258 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t267 = minus_g1_vx_leg1 * t211 + minus_g1_vx_leg2 * t226
+            + minus_g1_vx_leg3 * t242 + minus_g1_vx_leg4 * t258;
+        let t278 = g1_vy_leg1 * t211 - minus_g1_vy_leg2 * t226 - minus_g1_vy_leg3 * t242
+            + g1_vy_leg4 * t258 + t112 * t267;
+        let t280 = g1_wz_leg1 * t211 + g1_wz_leg2 * t226 + g1_wz_leg3 * t242
+            + g1_wz_leg4 * t258 - t135 * t267 - t154 * t278;
+        let rate_dot_3_leg1 = t157 * t280;
+        let t286 = t115 * t278 - t154 * rate_dot_3_leg1;
+        let t289 = t135 * rate_dot_3_leg1 - (t111 * t267 + t112 * t286);
+        let t290 = t7 * rate_dot_3_leg1;
+        let t292 = t289 + t290 + t187;
+        let t293 = t3 * rate_dot_3_leg1;
+        let t295 = t286 - t293 + t190;
+        let t296 = t292 + t295;
+        let t298 = t286 + t290 + t187;
+        let t299 = t296 - t298;
+        let t301 = t286 - t290 - t187;
+        let t302 = t299 - t301;
+        let t303 = t292 - t302;
+        let t306 = t289 + t293 - t190;
+        let t307 = t298 - t306;
+        let t308 = t295 - t307;
+        let t311 = t35 * t303 - t92 * t308 - t208;
+        let rate_dot_1_leg1_2 = t36 * t311;
+        let rate_1_leg1 = g1_vy_leg1 * t204 - minus_g1_vx_leg1 * t202;
+        let c2_leg1 = 2.079725827019258 * t33;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t36
+            * (0.7071067811865476 * (t308 + t303) + t208 * c2_leg1);
+        let t340 = c2_leg1 * rate_dot_1_leg1_2;
+        let t344 = minus_s2_leg1
+            * (t207 * parameters[6] + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t311)
             + c2_leg1
-                * (parameters[6] * rate_dot_2_leg1 - t211 * parameters[7]
-                    + parameters[8] * t333);
-        let t338 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
+                * (parameters[6] * rate_dot_2_leg1 - t207 * parameters[7]
+                    + parameters[8] * t340);
+        let t345 = parameters[0] * rate_dot_1_leg1_2 + parameters[1] * rate_dot_1_leg1_2
             + rate_1_leg1 * parameters[2]
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t337;
-        let t348 = ::overact::math::signed(parameters[10], rate_3_leg1 - rate_2_leg1);
-        let t349 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t333
-            + parameters[7] * t303 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t348;
-        let t350 = g2_vx_leg1 * t349;
-        let t355 = t297 - t289 + t194;
-        let t357 = t288 - t298 - t191;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
-            * (0.7071067811865476 * (t355 - t357) - 0.7071067811865476 * t42 * t226);
-        let c2_leg2 = 2.079725827019258 * t42;
-        let t369 = t93 * t355 + t44 * t357 + t227;
-        let minus_rate_dot_1_leg2_2 = t45 * t369;
-        let t371 = c2_leg2 * minus_rate_dot_1_leg2_2;
-        let t378 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
-        let t379 = ::overact::math::signed(parameters[20], rate_2_leg2)
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t371
-                + parameters[18] * t369) - t378;
-        let t380 = minus_g2_vx_leg2 * t379;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t223 + minus_g1_vy_leg2 * t221;
-        let t404 = minus_s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - t226 * parameters[17]
-                + parameters[19] * t369)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t344;
+        let t355 = ::overact::math::signed(parameters[10], rate_3_leg1 - rate_2_leg1);
+        let t356 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t340
+            + parameters[7] * t311 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t355;
+        let t357 = g2_vx_leg1 * t356;
+        let c2_leg2 = 2.079725827019258 * t18;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t51
+            * (0.7071067811865476 * t302 - t223 * c2_leg2);
+        let t370 = t89 * t299 + t50 * t301 + t223;
+        let minus_rate_dot_1_leg2_2 = t51 * t370;
+        let t372 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t379 = ::overact::math::signed(parameters[21], rate_3_leg1 - rate_2_leg2);
+        let t380 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t372
+                + parameters[18] * t370) - t379;
+        let t381 = minus_g2_vx_leg2 * t380;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t219 + minus_g1_vy_leg2 * t217;
+        let t405 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - t222 * parameters[17]
+                + parameters[19] * t370)
             + c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + t226 * parameters[18]
-                    + parameters[19] * t371);
-        let t405 = parameters[15]
+                * (parameters[17] * minus_rate_dot_2_leg2 + t222 * parameters[18]
+                    + parameters[19] * t372);
+        let t406 = parameters[15]
             - (parameters[12] * minus_rate_dot_1_leg2_2
                 + minus_rate_1_leg2 * parameters[13]
                 + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
-            - parameters[11] * minus_rate_dot_1_leg2_2 - t404;
-        let t410 = t297 + t298 + t191;
-        let t413 = t288 - t289 + t194;
-        let t416 = t100 * t410 + t66 * t413 + t243;
-        let minus_rate_dot_1_leg3_2 = t67 * t416;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t237 + minus_g1_vy_leg3 * t239;
+            - parameters[11] * minus_rate_dot_1_leg2_2 - t405;
+        let t413 = t96 * t292 + t66 * t295 + t239;
+        let minus_rate_dot_1_leg3_2 = t67 * t413;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t233 + minus_g1_vy_leg3 * t235;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
         let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
-            * (0.7071067811865476 * (t410 + t413) + 0.7071067811865476 * t64 * t242);
-        let minus_c2_leg3 = 2.079725827019258 * t64;
-        let t443 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t450 = minus_s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - t242 * parameters[28]
-                + parameters[30] * t416)
+            * (0.7071067811865476 * t296 + t239 * minus_c2_leg3);
+        let t438 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t445 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - t238 * parameters[28]
+                + parameters[30] * t413)
             + minus_c2_leg3
-                * (parameters[30] * t443
-                    - (parameters[28] * minus_rate_dot_2_leg3 + t242 * parameters[29]));
-        let t451 = parameters[26]
+                * (parameters[30] * t438
+                    - (parameters[28] * minus_rate_dot_2_leg3 + t238 * parameters[29]));
+        let t446 = parameters[26]
             - (parameters[23] * minus_rate_dot_1_leg3_2
                 + minus_rate_1_leg3 * parameters[24]
                 + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
-            - parameters[22] * minus_rate_dot_1_leg3_2 - t450;
-        let t461 = ::overact::math::signed(
+            - parameters[22] * minus_rate_dot_1_leg3_2 - t445;
+        let t456 = ::overact::math::signed(
             parameters[32],
             minus_rate_2_leg3 + rate_3_leg1,
         );
-        let t462 = parameters[28] * t443 - parameters[27] * minus_rate_dot_2_leg3
-            - parameters[29] * t416
-            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t461;
-        let t463 = minus_g2_vx_leg3 * t462;
-        let rate_1_leg4 = g1_vy_leg4 * t252 - minus_g1_vx_leg4 * t250;
-        let t471 = t297 + t289 - t194;
-        let t474 = t288 + t298 + t191;
-        let t477 = t104 * t471 - t88 * t474 + t256;
-        let minus_rate_dot_1_leg4_2 = t89 * t477;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
-            * (0.7071067811865476 * (t474 - t471) - 0.7071067811865476 * t86 * t255);
-        let c2_leg4 = 2.079725827019258 * t86;
-        let t503 = c2_leg4 * minus_rate_dot_1_leg4_2;
-        let t507 = minus_s2_leg4
-            * (parameters[40] * minus_rate_dot_2_leg4 - t255 * parameters[39]
-                + parameters[41] * t477)
+        let t457 = parameters[28] * t438 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t413
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t456;
+        let t458 = minus_g2_vx_leg3 * t457;
+        let rate_1_leg4 = g1_vy_leg4 * t248 - minus_g1_vx_leg4 * t246;
+        let t468 = t100 * t306 - t84 * t298 + t252;
+        let minus_rate_dot_1_leg4_2 = t85 * t468;
+        let c2_leg4 = 2.079725827019258 * t82;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t85
+            * (0.7071067811865476 * t307 - t252 * c2_leg4);
+        let t492 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t496 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - t251 * parameters[39]
+                + parameters[41] * t468)
             + c2_leg4
-                * (parameters[39] * minus_rate_dot_2_leg4 + t255 * parameters[40]
-                    + parameters[41] * t503);
-        let t508 = rate_1_leg4 * parameters[35]
+                * (parameters[39] * minus_rate_dot_2_leg4 + t251 * parameters[40]
+                    + parameters[41] * t492);
+        let t497 = rate_1_leg4 * parameters[35]
             - parameters[34] * minus_rate_dot_1_leg4_2
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            - parameters[33] * minus_rate_dot_1_leg4_2 - t507;
-        let t518 = ::overact::math::signed(parameters[43], rate_3_leg1 - rate_2_leg4);
-        let t519 = ::overact::math::signed(parameters[42], rate_2_leg4)
-            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t503
-                + parameters[40] * t477) - t518;
-        let t520 = g2_vx_leg4 * t519;
-        let t522 = g1_vy_leg1 * t338 + t350 + t380 - minus_g1_vy_leg2 * t405
-            - (minus_g1_vy_leg3 * t451 + t463) + g1_vy_leg4 * t508 - t520;
-        let t525 = c_phi * t297 + s_phi * t288;
-        let t527 = rate_3_leg1 * rate_3_leg1;
-        let t531 = parameters[47] * t525
-            - (t527 * parameters[45] + rate_dot_3_leg1 * parameters[46]);
-        let t538 = c_phi * t288 - s_phi * t297;
-        let t540 = rate_dot_3_leg1 * parameters[45] - t527 * parameters[46]
-            + parameters[47] * t538;
-        let t554 = t350 - minus_g1_vx_leg1 * t338 - (minus_g1_vx_leg2 * t405 + t380)
-            - (minus_g1_vx_leg3 * t451 + t463) + t520 - minus_g1_vx_leg4 * t508;
-        let t558 = t554 + c_phi * t531 - s_phi * t540;
-        let t560 = t522 + s_phi * t531 + c_phi * t540 - t116 * t558;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
-        let t587 = g1_wz_leg1 * t338 + g2_wz_leg1 * t349 + t348 + g1_wz_leg2 * t405
-            + g2_wz_leg2 * t379 + t378 + g1_wz_leg3 * t451 + g2_wz_leg3 * t462 + t461;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
-        let t602 = t587 + g1_wz_leg4 * t508 + g2_wz_leg4 * t519 + t518
-            + rate_dot_3_leg1 * parameters[44] + parameters[45] * t538
-            - parameters[46] * t525;
-        let t607 = t161 * (t602 + t146 * t558 - t158 * t560);
-        let t609 = t119 * t560 - t158 * t607;
-        let t615 = t115 * t558 - t116 * t609 + t146 * t607;
+            - parameters[33] * minus_rate_dot_1_leg4_2 - t496;
+        let t507 = ::overact::math::signed(parameters[43], rate_3_leg1 - rate_2_leg4);
+        let t508 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t492
+                + parameters[40] * t468) - t507;
+        let t509 = g2_vx_leg4 * t508;
+        let t511 = g1_vy_leg1 * t345 + t357 + t381 - minus_g1_vy_leg2 * t406
+            - (minus_g1_vy_leg3 * t446 + t458) + g1_vy_leg4 * t497 - t509;
+        let t513 = rate_3_leg1 * rate_3_leg1;
+        let t516 = s_phi * t513 - c_phi * rate_dot_3_leg1;
+        let t520 = c_phi * t513 + s_phi * rate_dot_3_leg1;
+        let t535 = t357 - minus_g1_vx_leg1 * t345 - (minus_g1_vx_leg2 * t406 + t381)
+            - (minus_g1_vx_leg3 * t446 + t458) + t509 - minus_g1_vx_leg4 * t497;
+        let t541 = t535 + parameters[46] * t516 - parameters[45] * t520
+            + t289 * parameters[47];
+        let t543 = t511 + t286 * parameters[47]
+            - (parameters[45] * t516 + parameters[46] * t520) - t112 * t541;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t36 - t6 * t36);
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t51 - t6 * t51);
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t67 - t6 * t67);
+        let t570 = g1_wz_leg1 * t345 + g2_wz_leg1 * t356 + t355 + g1_wz_leg2 * t406
+            + g2_wz_leg2 * t380 + t379 + g1_wz_leg3 * t446 + g2_wz_leg3 * t457 + t456;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t85 - t6 * t85);
+        let t590 = rate_dot_3_leg1 * parameters[44]
+            + parameters[45] * (c_phi * t286 - s_phi * t289)
+            - parameters[46] * (s_phi * t286 + c_phi * t289);
+        let t595 = t570 + g1_wz_leg4 * t497 + g2_wz_leg4 * t508 + t507 + t590
+            + t135 * t541 - t154 * t543;
+        let t596 = t157 * t595;
+        let t598 = t115 * t543 - t154 * t596;
+        let t604 = t111 * t541 - t112 * t598 + t135 * t596;
         Ok([
-            g1_vy_leg1 * t609 - minus_g1_vx_leg1 * t615 + g1_wz_leg1 * t607,
-            g1_wz_leg2 * t607 - (minus_g1_vx_leg2 * t615 + minus_g1_vy_leg2 * t609),
-            g1_wz_leg3 * t607 - (minus_g1_vx_leg3 * t615 + minus_g1_vy_leg3 * t609),
-            g1_vy_leg4 * t609 - minus_g1_vx_leg4 * t615 + g1_wz_leg4 * t607,
+            g1_vy_leg1 * t598 - minus_g1_vx_leg1 * t604 + g1_wz_leg1 * t596,
+            g1_wz_leg2 * t596 - (minus_g1_vx_leg2 * t604 + minus_g1_vy_leg2 * t598),
+            g1_wz_leg3 * t596 - (minus_g1_vx_leg3 * t604 + minus_g1_vy_leg3 * t598),
+            g1_vy_leg4 * t598 - minus_g1_vx_leg4 * t604 + g1_wz_leg4 * t596,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -5534,7 +5513,7 @@ impl Planar4Prr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 445 operations (191 additions, 250 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 445 intermediates.
+    /// 437 operations (183 additions, 250 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 437 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5543,75 +5522,78 @@ impl Planar4Prr {
         parameters: &[f64; 48],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 1.0 / minus_s2_leg1;
-        let g2_vx_leg1 = 2.079725827019258 * t20;
-        let t22 = g2_vx_leg1 * parameters[5];
-        let t23 = t9 + t5;
-        let c2_leg1 = 2.079725827019258 * t23;
-        let t25 = 1.4705882352941178 * t23;
-        let t26 = 0.7071067811865476 * minus_s2_leg1;
-        let t27 = t25 + t26;
-        let minus_g1_vx_leg1 = t27 * t20;
-        let t29 = c2_leg1 * minus_g1_vx_leg1;
-        let t35 = g2_vx_leg1 * parameters[7];
-        let t39 = g2_vx_leg1 * parameters[6];
-        let t47 = minus_s2_leg1 * (t35 - t27 * parameters[8])
-            + c2_leg1 * (t39 - parameters[8] * t29)
+        let t32 = 1.0 / minus_s2_leg1;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let t34 = g2_vx_leg1 * parameters[5];
+        let t35 = t21 + t19;
+        let c2_leg1 = 2.079725827019258 * t35;
+        let t37 = 1.4705882352941178 * t35;
+        let t38 = 0.7071067811865476 * minus_s2_leg1;
+        let t39 = t37 + t38;
+        let minus_g1_vx_leg1 = t39 * t32;
+        let t41 = c2_leg1 * minus_g1_vx_leg1;
+        let t47 = g2_vx_leg1 * parameters[7];
+        let t51 = g2_vx_leg1 * parameters[6];
+        let t59 = minus_s2_leg1 * (t47 - t39 * parameters[8])
+            + c2_leg1 * (t51 - parameters[8] * t41)
             - (minus_g1_vx_leg1 * parameters[0] + minus_g1_vx_leg1 * parameters[1]);
-        let t51 = pose[0] - t3 + 0.21213203435596426;
-        let t53 = pose[1] + t7 - 0.21213203435596426;
-        let t54 = t51 + t53;
-        let t62 = 8.650519031141869
-            * (0.5 * (t54 * t54) - (t51 * t51 + t53 * t53 - 0.1156));
-        ::overact::guard::reach(t62, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t62);
+        let t69 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t69, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t69);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t64 = 1.0 / minus_s2_leg2;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t64;
-        let t66 = minus_g2_vx_leg2 * parameters[16];
-        let t67 = t53 - t51;
-        let c2_leg2 = 2.079725827019258 * t67;
-        let t69 = 0.7071067811865476 * minus_s2_leg2;
-        let t70 = 1.4705882352941178 * t67;
-        let t71 = t69 - t70;
-        let minus_g1_vx_leg2 = t71 * t64;
-        let t73 = c2_leg2 * minus_g1_vx_leg2;
-        let t82 = minus_g2_vx_leg2 * parameters[18];
-        let t86 = minus_g2_vx_leg2 * parameters[17];
-        let t91 = minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]
-            + minus_s2_leg2 * (t82 + t71 * parameters[19])
-            + c2_leg2 * (t86 + parameters[19] * t73);
-        let t94 = g2_vx_leg1 * (t22 - parameters[6] * t29 - t27 * parameters[7])
-            - minus_g1_vx_leg1 * t47
-            + minus_g2_vx_leg2 * (t66 + parameters[17] * t73 + t71 * parameters[18])
-            + minus_g1_vx_leg2 * t91;
-        let t96 = pose[0] - t7 + 0.21213203435596426;
-        let t98 = pose[1] - t3 + 0.21213203435596426;
-        let t99 = t96 - t98;
-        let t107 = 8.650519031141869
-            * (0.5 * (t99 * t99) - (t96 * t96 + t98 * t98 - 0.1156));
-        ::overact::guard::reach(t107, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t107);
+        let t71 = 1.0 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t71;
+        let t73 = minus_g2_vx_leg2 * parameters[16];
+        let c2_leg2 = 2.079725827019258 * t18;
+        let t75 = 0.7071067811865476 * minus_s2_leg2;
+        let t76 = 1.4705882352941178 * t18;
+        let t77 = t75 - t76;
+        let minus_g1_vx_leg2 = t77 * t71;
+        let t79 = c2_leg2 * minus_g1_vx_leg2;
+        let t88 = minus_g2_vx_leg2 * parameters[18];
+        let t92 = minus_g2_vx_leg2 * parameters[17];
+        let t97 = minus_g1_vx_leg2 * parameters[12] + minus_g1_vx_leg2 * parameters[11]
+            + minus_s2_leg2 * (t88 + t77 * parameters[19])
+            + c2_leg2 * (t92 + parameters[19] * t79);
+        let t100 = g2_vx_leg1 * (t34 - parameters[6] * t41 - t39 * parameters[7])
+            - minus_g1_vx_leg1 * t59
+            + minus_g2_vx_leg2 * (t73 + parameters[17] * t79 + t77 * parameters[18])
+            + minus_g1_vx_leg2 * t97;
+        let t108 = 8.650519031141869
+            * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t108, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t108);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t109 = 1.0 / minus_s2_leg3;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t109;
-        let t111 = t96 + t98;
-        let minus_c2_leg3 = 2.079725827019258 * t111;
-        let t113 = 1.4705882352941178 * t111;
+        let t110 = 1.0 / minus_s2_leg3;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t110;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
+        let t113 = 1.4705882352941178 * t14;
         let t114 = 0.7071067811865476 * minus_s2_leg3;
         let t115 = t113 - t114;
-        let minus_g1_vx_leg3 = t115 * t109;
+        let minus_g1_vx_leg3 = t115 * t110;
         let t117 = minus_c2_leg3 * minus_g1_vx_leg3;
         let t119 = minus_g2_vx_leg3 * parameters[27];
         let t127 = minus_g2_vx_leg3 * parameters[29];
@@ -5619,119 +5601,123 @@ impl Planar4Prr {
         let t136 = minus_g1_vx_leg3 * parameters[23] + minus_g1_vx_leg3 * parameters[22]
             + minus_s2_leg3 * (t127 + t115 * parameters[30])
             + minus_c2_leg3 * (parameters[30] * t117 - t132);
-        let t141 = pose[0] + t3 - 0.21213203435596426;
-        let t143 = pose[1] - t7 + 0.21213203435596426;
-        let t144 = t141 + t143;
-        let t152 = 8.650519031141869
-            * (0.5 * (t144 * t144) - (t141 * t141 + t143 * t143 - 0.1156));
-        ::overact::guard::reach(t152, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t152);
+        let t140 = t12 + t16;
+        let t148 = 8.650519031141869
+            * (0.5 * (t140 * t140) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t148, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t148);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t154 = 1.0 / minus_s2_leg4;
-        let g2_vx_leg4 = 2.079725827019258 * t154;
-        let t156 = t141 - t143;
-        let c2_leg4 = 2.079725827019258 * t156;
-        let t158 = 1.4705882352941178 * t156;
-        let t159 = 0.7071067811865476 * minus_s2_leg4;
-        let t160 = t158 - t159;
-        let minus_g1_vx_leg4 = t160 * t154;
-        let t162 = c2_leg4 * minus_g1_vx_leg4;
-        let t164 = g2_vx_leg4 * parameters[38];
-        let t173 = g2_vx_leg4 * parameters[40];
-        let t177 = g2_vx_leg4 * parameters[39];
-        let t181 = minus_g1_vx_leg4 * parameters[34] + minus_g1_vx_leg4 * parameters[33]
-            + minus_s2_leg4 * (t160 * parameters[41] - t173)
-            + c2_leg4 * (parameters[41] * t162 - t177);
-        let t184 = t94
+        let t150 = 1.0 / minus_s2_leg4;
+        let g2_vx_leg4 = 2.079725827019258 * t150;
+        let t152 = t12 - t16;
+        let c2_leg4 = 2.079725827019258 * t152;
+        let t154 = 1.4705882352941178 * t152;
+        let t155 = 0.7071067811865476 * minus_s2_leg4;
+        let t156 = t154 - t155;
+        let minus_g1_vx_leg4 = t156 * t150;
+        let t158 = c2_leg4 * minus_g1_vx_leg4;
+        let t160 = g2_vx_leg4 * parameters[38];
+        let t169 = g2_vx_leg4 * parameters[40];
+        let t173 = g2_vx_leg4 * parameters[39];
+        let t177 = minus_g1_vx_leg4 * parameters[34] + minus_g1_vx_leg4 * parameters[33]
+            + minus_s2_leg4 * (t156 * parameters[41] - t169)
+            + c2_leg4 * (parameters[41] * t158 - t173);
+        let t180 = t100
             - (minus_g2_vx_leg3 * (parameters[28] * t117 - t119 - t115 * parameters[29])
                 - minus_g1_vx_leg3 * t136)
-            - (g2_vx_leg4 * (parameters[39] * t162 - t164 + t160 * parameters[40])
-                - minus_g1_vx_leg4 * t181);
-        let t186 = t26 - t25;
-        let g1_vy_leg1 = t186 * t20;
-        let t188 = c2_leg1 * g1_vy_leg1;
-        let t193 = g2_vx_leg1 * (t22 + parameters[6] * t188 + t186 * parameters[7]);
-        let t204 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
-            + minus_s2_leg1 * (t35 + t186 * parameters[8])
-            + c2_leg1 * (t39 + parameters[8] * t188);
-        let t207 = t69 + t70;
-        let minus_g1_vy_leg2 = t207 * t64;
-        let t209 = c2_leg2 * minus_g1_vy_leg2;
-        let t214 = minus_g2_vx_leg2
-            * (parameters[17] * t209 - t66 + t207 * parameters[18]);
-        let t225 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
-            + minus_s2_leg2 * (t207 * parameters[19] - t82)
-            + c2_leg2 * (parameters[19] * t209 - t86);
-        let t229 = t114 + t113;
-        let minus_g1_vy_leg3 = t229 * t109;
-        let t231 = minus_c2_leg3 * minus_g1_vy_leg3;
-        let t236 = minus_g2_vx_leg3
-            * (parameters[28] * t231 - t119 - t229 * parameters[29]);
-        let t247 = minus_g1_vy_leg3 * parameters[23] + minus_g1_vy_leg3 * parameters[22]
-            + minus_s2_leg3 * (t127 + t229 * parameters[30])
-            + minus_c2_leg3 * (parameters[30] * t231 - t132);
-        let t251 = t159 + t158;
-        let g1_vy_leg4 = t251 * t154;
-        let t259 = c2_leg4 * g1_vy_leg4;
-        let t264 = g1_vy_leg4 * parameters[34] + g1_vy_leg4 * parameters[33]
-            - (minus_s2_leg4 * (t173 - t251 * parameters[41])
-                + c2_leg4 * (t177 - parameters[41] * t259));
-        let t270 = g2_vx_leg4 * (t164 - parameters[39] * t259 - t251 * parameters[40]);
-        let t272 = t193 - minus_g1_vx_leg1 * t204 + t214 + minus_g1_vx_leg2 * t225
-            - (t236 - minus_g1_vx_leg3 * t247) - (minus_g1_vx_leg4 * t264 + t270);
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let t281 = c2_leg1 * g1_wz_leg1;
-        let t286 = t7 * t186 + t3 * t27;
-        let t288 = g2_wz_leg1 * parameters[5] + parameters[6] * t281
-            + parameters[7] * t286;
-        let t289 = g2_vx_leg1 * t288;
-        let t302 = g1_wz_leg1 * parameters[0] + g1_wz_leg1 * parameters[1]
-            + minus_s2_leg1 * (g2_wz_leg1 * parameters[7] + parameters[8] * t286)
-            + c2_leg1 * (g2_wz_leg1 * parameters[6] + parameters[8] * t281);
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t64 - t2 * t64);
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let t313 = c2_leg2 * g1_wz_leg2;
-        let t318 = t7 * t71 + t3 * t207;
-        let t320 = g2_wz_leg2 * parameters[16] + parameters[17] * t313
-            + parameters[18] * t318;
-        let t321 = minus_g2_vx_leg2 * t320;
-        let t334 = g1_wz_leg2 * parameters[12] + g1_wz_leg2 * parameters[11]
-            + minus_s2_leg2 * (g2_wz_leg2 * parameters[18] + parameters[19] * t318)
-            + c2_leg2 * (g2_wz_leg2 * parameters[17] + parameters[19] * t313);
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t346 = t3 * t115 - t7 * t229;
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t109 - t2 * t109);
-        let t356 = minus_c2_leg3 * g1_wz_leg3;
-        let t361 = g1_wz_leg3 * parameters[23] + g1_wz_leg3 * parameters[22]
-            - (minus_s2_leg3 * (parameters[30] * t346 - g2_wz_leg3 * parameters[29])
-                + minus_c2_leg3 * (g2_wz_leg3 * parameters[28] - parameters[30] * t356));
-        let t367 = g2_wz_leg3 * parameters[27] - parameters[28] * t356
-            - parameters[29] * t346;
-        let t368 = minus_g2_vx_leg3 * t367;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t379 = t7 * t160 - t3 * t251;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t154 - t2 * t154);
-        let t389 = c2_leg4 * g1_wz_leg4;
-        let t394 = g1_wz_leg4 * parameters[34] + g1_wz_leg4 * parameters[33]
-            - (minus_s2_leg4 * (parameters[41] * t379 - g2_wz_leg4 * parameters[40])
-                - c2_leg4 * (g2_wz_leg4 * parameters[39] + parameters[41] * t389));
-        let t400 = parameters[40] * t379
-            - (g2_wz_leg4 * parameters[38] + parameters[39] * t389);
-        let t401 = g2_vx_leg4 * t400;
-        let t403 = t289 - minus_g1_vx_leg1 * t302 - (t321 + minus_g1_vx_leg2 * t334)
-            - (minus_g1_vx_leg3 * t361 + t368) - (minus_g1_vx_leg4 * t394 + t401);
-        let t407 = t403 - (c_phi * parameters[46] + s_phi * parameters[45]);
-        let t418 = g1_vy_leg1 * t204 + t193 - (t214 - minus_g1_vy_leg2 * t225)
-            - (t236 - minus_g1_vy_leg3 * t247) + g1_vy_leg4 * t264 + t270;
-        let t430 = g1_vy_leg1 * t302 + t289 - (minus_g1_vy_leg2 * t334 - t321)
-            - (minus_g1_vy_leg3 * t361 + t368) + g1_vy_leg4 * t394 + t401;
-        let t434 = t430 + c_phi * parameters[45] - s_phi * parameters[46];
-        let t445 = g1_wz_leg1 * t302 + g2_wz_leg1 * t288 + g1_wz_leg2 * t334
-            + g2_wz_leg2 * t320 + g1_wz_leg3 * t361 + g2_wz_leg3 * t367;
+            - (g2_vx_leg4 * (parameters[39] * t158 - t160 + t156 * parameters[40])
+                - minus_g1_vx_leg4 * t177);
+        let t182 = t38 - t37;
+        let g1_vy_leg1 = t182 * t32;
+        let t184 = c2_leg1 * g1_vy_leg1;
+        let t189 = g2_vx_leg1 * (t34 + parameters[6] * t184 + t182 * parameters[7]);
+        let t200 = g1_vy_leg1 * parameters[0] + g1_vy_leg1 * parameters[1]
+            + minus_s2_leg1 * (t47 + t182 * parameters[8])
+            + c2_leg1 * (t51 + parameters[8] * t184);
+        let t203 = t75 + t76;
+        let minus_g1_vy_leg2 = t203 * t71;
+        let t205 = c2_leg2 * minus_g1_vy_leg2;
+        let t210 = minus_g2_vx_leg2
+            * (parameters[17] * t205 - t73 + t203 * parameters[18]);
+        let t221 = minus_g1_vy_leg2 * parameters[12] + minus_g1_vy_leg2 * parameters[11]
+            + minus_s2_leg2 * (t203 * parameters[19] - t88)
+            + c2_leg2 * (parameters[19] * t205 - t92);
+        let t225 = t114 + t113;
+        let minus_g1_vy_leg3 = t225 * t110;
+        let t227 = minus_c2_leg3 * minus_g1_vy_leg3;
+        let t232 = minus_g2_vx_leg3
+            * (parameters[28] * t227 - t119 - t225 * parameters[29]);
+        let t243 = minus_g1_vy_leg3 * parameters[23] + minus_g1_vy_leg3 * parameters[22]
+            + minus_s2_leg3 * (t127 + t225 * parameters[30])
+            + minus_c2_leg3 * (parameters[30] * t227 - t132);
+        let t247 = t155 + t154;
+        let g1_vy_leg4 = t247 * t150;
+        let t255 = c2_leg4 * g1_vy_leg4;
+        let t260 = g1_vy_leg4 * parameters[34] + g1_vy_leg4 * parameters[33]
+            - (minus_s2_leg4 * (t169 - t247 * parameters[41])
+                + c2_leg4 * (t173 - parameters[41] * t255));
+        let t266 = g2_vx_leg4 * (t160 - parameters[39] * t255 - t247 * parameters[40]);
+        let t268 = t189 - minus_g1_vx_leg1 * t200 + t210 + minus_g1_vx_leg2 * t221
+            - (t232 - minus_g1_vx_leg3 * t243) - (minus_g1_vx_leg4 * t260 + t266);
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t32 - t6 * t32);
+        let t276 = t3 * t182 + t7 * t39;
+        let g1_wz_leg1 = t32 * t276;
+        let t278 = c2_leg1 * g1_wz_leg1;
+        let t282 = g2_wz_leg1 * parameters[5] + parameters[6] * t278
+            + parameters[7] * t276;
+        let t283 = g2_vx_leg1 * t282;
+        let t296 = g1_wz_leg1 * parameters[0] + g1_wz_leg1 * parameters[1]
+            + minus_s2_leg1 * (g2_wz_leg1 * parameters[7] + parameters[8] * t276)
+            + c2_leg1 * (g2_wz_leg1 * parameters[6] + parameters[8] * t278);
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t71 - t6 * t71);
+        let t306 = t3 * t77 + t7 * t203;
+        let g1_wz_leg2 = t71 * t306;
+        let t308 = c2_leg2 * g1_wz_leg2;
+        let t312 = g2_wz_leg2 * parameters[16] + parameters[17] * t308
+            + parameters[18] * t306;
+        let t313 = minus_g2_vx_leg2 * t312;
+        let t326 = g1_wz_leg2 * parameters[12] + g1_wz_leg2 * parameters[11]
+            + minus_s2_leg2 * (g2_wz_leg2 * parameters[18] + parameters[19] * t306)
+            + c2_leg2 * (g2_wz_leg2 * parameters[17] + parameters[19] * t308);
+        let t332 = t7 * t115 - t3 * t225;
+        let minus_g1_wz_leg3 = t110 * t332;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t110 - t6 * t110);
+        let t346 = minus_c2_leg3 * minus_g1_wz_leg3;
+        let t351 = minus_g1_wz_leg3 * parameters[23] + minus_g1_wz_leg3 * parameters[22]
+            + minus_s2_leg3 * (parameters[30] * t332 - g2_wz_leg3 * parameters[29])
+            + minus_c2_leg3 * (g2_wz_leg3 * parameters[28] + parameters[30] * t346);
+        let t357 = g2_wz_leg3 * parameters[27] + parameters[28] * t346
+            - parameters[29] * t332;
+        let t358 = minus_g2_vx_leg3 * t357;
+        let t363 = t3 * t156 - t7 * t247;
+        let minus_g1_wz_leg4 = t150 * t363;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t150 - t6 * t150);
+        let t377 = c2_leg4 * minus_g1_wz_leg4;
+        let t382 = minus_g1_wz_leg4 * parameters[34] + minus_g1_wz_leg4 * parameters[33]
+            + minus_s2_leg4 * (parameters[41] * t363 - g2_wz_leg4 * parameters[40])
+            - c2_leg4 * (g2_wz_leg4 * parameters[39] - parameters[41] * t377);
+        let t388 = parameters[40] * t363
+            - (g2_wz_leg4 * parameters[38] - parameters[39] * t377);
+        let t389 = g2_vx_leg4 * t388;
+        let t391 = t283 - minus_g1_vx_leg1 * t296 - (t313 + minus_g1_vx_leg2 * t326)
+            - (t358 - minus_g1_vx_leg3 * t351) - (t389 - minus_g1_vx_leg4 * t382);
+        let t392 = 9.81 * s_phi;
+        let t394 = 9.81 * c_phi;
+        let t398 = t391
+            - 0.1019367991845056 * (parameters[45] * t392 + parameters[46] * t394);
+        let t409 = g1_vy_leg1 * t200 + t189 - (t210 - minus_g1_vy_leg2 * t221)
+            - (t232 - minus_g1_vy_leg3 * t243) + g1_vy_leg4 * t260 + t266;
+        let t421 = g1_vy_leg1 * t296 + t283 - (minus_g1_vy_leg2 * t326 - t313)
+            - (t358 - minus_g1_vy_leg3 * t351) + t389 - g1_vy_leg4 * t382;
+        let t426 = t421
+            - 0.1019367991845056 * (parameters[46] * t392 - parameters[45] * t394);
+        let t437 = g1_wz_leg1 * t296 + g2_wz_leg1 * t282 + g1_wz_leg2 * t326
+            + g2_wz_leg2 * t312 + minus_g1_wz_leg3 * t351 + g2_wz_leg3 * t357;
         Ok([
-            [t184 + parameters[47], t272, t407], [t272, t418 + parameters[47], t434],
-            [t407, t434, t445 + g1_wz_leg4 * t394 - g2_wz_leg4 * t400 + parameters[44]],
+            [t180 + parameters[47], t268, t398], [t268, t409 + parameters[47], t426],
+            [
+                t398, t426, t437 + minus_g1_wz_leg4 * t382 - g2_wz_leg4 * t388 + parameters[44],
+            ],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -5743,7 +5729,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 386 operations (172 additions, 210 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 401 intermediates.
+    /// 378 operations (168 additions, 206 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 12 signs, 393 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5753,206 +5739,209 @@ impl Planar4Prr {
         parameters: &[f64; 48],
     ) -> Result<[f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 1.0 / minus_s2_leg1;
-        let g2_vx_leg1 = 2.079725827019258 * t20;
-        let t23 = t9 + t5;
-        let t25 = t3 * twist[2];
-        let t26 = twist[0] - t25;
-        let t28 = t7 * twist[2];
-        let t29 = twist[1] + t28;
-        let rate_2_leg1 = g2_vx_leg1 * t26 + g2_vx_leg1 * t29;
-        let t32 = rate_2_leg1 * rate_2_leg1;
-        let t34 = twist[2] * t28;
-        let t35 = twist[2] * t25;
-        let t37 = 0.7071067811865476 * (t34 + t35);
-        let rate_dot_2_leg1 = 2.9411764705882355 * t20
-            * (0.7071067811865476 * t23 * t32 - t37);
-        let c2_leg1 = 2.079725827019258 * t23;
-        let t42 = 1.4705882352941178 * t23;
-        let t43 = 0.7071067811865476 * minus_s2_leg1;
-        let t44 = t42 + t43;
-        let t46 = t43 - t42;
-        let t50 = t44 * t34 - t46 * t35 - 0.34 * t32;
-        let rate_dot_1_leg1 = t20 * t50;
-        let t52 = c2_leg1 * rate_dot_1_leg1;
-        let t60 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t61 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t52
-            + parameters[7] * t50 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t60;
-        let t62 = g2_vx_leg1 * t61;
-        let minus_g1_vx_leg1 = t44 * t20;
-        let g1_vy_leg1 = t46 * t20;
-        let rate_1_leg1 = g1_vy_leg1 * t29 - minus_g1_vx_leg1 * t26;
-        let t88 = minus_s2_leg1
-            * (parameters[6] * t32 + parameters[7] * rate_dot_2_leg1
-                + parameters[8] * t50)
+        let t32 = 1.0 / minus_s2_leg1;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let t35 = t21 + t19;
+        let c2_leg1 = 2.079725827019258 * t35;
+        let t37 = t7 * twist[2];
+        let t38 = twist[0] - t37;
+        let t40 = t3 * twist[2];
+        let t41 = twist[1] + t40;
+        let rate_2_leg1 = g2_vx_leg1 * t38 + g2_vx_leg1 * t41;
+        let t44 = rate_2_leg1 * rate_2_leg1;
+        let t45 = 0.34 * t44;
+        let t47 = twist[2] * t40;
+        let t48 = twist[2] * t37;
+        let t50 = 0.7071067811865476 * (t47 + t48);
+        let rate_dot_2_leg1 = 2.9411764705882355 * t32 * (c2_leg1 * t45 - t50);
+        let t54 = 1.4705882352941178 * t35;
+        let t55 = 0.7071067811865476 * minus_s2_leg1;
+        let t56 = t54 + t55;
+        let t58 = t55 - t54;
+        let t61 = t56 * t47 - t58 * t48 - t45;
+        let rate_dot_1_leg1 = t32 * t61;
+        let t63 = c2_leg1 * rate_dot_1_leg1;
+        let t71 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t72 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t63
+            + parameters[7] * t61 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t71;
+        let t73 = g2_vx_leg1 * t72;
+        let minus_g1_vx_leg1 = t56 * t32;
+        let g1_vy_leg1 = t58 * t32;
+        let rate_1_leg1 = g1_vy_leg1 * t41 - minus_g1_vx_leg1 * t38;
+        let t99 = minus_s2_leg1
+            * (parameters[6] * t44 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t61)
             + c2_leg1
-                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t32
-                    + parameters[8] * t52);
-        let t89 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t44
+                    + parameters[8] * t63);
+        let t100 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t88;
-        let t93 = pose[0] - t3 + 0.21213203435596426;
-        let t95 = pose[1] + t7 - 0.21213203435596426;
-        let t96 = t93 + t95;
-        let t104 = 8.650519031141869
-            * (0.5 * (t96 * t96) - (t93 * t93 + t95 * t95 - 0.1156));
-        ::overact::guard::reach(t104, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t104);
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t99;
+        let t110 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t110, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t110);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t106 = 0.7071067811865476 * minus_s2_leg2;
-        let t107 = t95 - t93;
-        let t108 = 1.4705882352941178 * t107;
-        let t109 = t106 - t108;
-        let t110 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t109 * t110;
-        let t113 = t106 + t108;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t110;
-        let t117 = twist[1] - t25;
-        let t119 = twist[0] - t28;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t117 - minus_g2_vx_leg2 * t119;
-        let t122 = rate_2_leg2 * rate_2_leg2;
-        let t124 = t109 * t35 - t113 * t34 + 0.34 * t122;
-        let minus_rate_dot_1_leg2 = t110 * t124;
-        let minus_g1_vy_leg2 = t113 * t110;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t119 + minus_g1_vy_leg2 * t117;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t110
-            * (t37 - 0.7071067811865476 * t107 * t122);
-        let c2_leg2 = 2.079725827019258 * t107;
-        let t153 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t157 = minus_s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t122
-                + parameters[19] * t124)
+        let t112 = 0.7071067811865476 * minus_s2_leg2;
+        let t113 = 1.4705882352941178 * t18;
+        let t114 = t112 - t113;
+        let t115 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t114 * t115;
+        let t118 = t112 + t113;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t115;
+        let t122 = twist[1] - t37;
+        let t124 = twist[0] - t40;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t122 - minus_g2_vx_leg2 * t124;
+        let t127 = rate_2_leg2 * rate_2_leg2;
+        let t128 = 0.34 * t127;
+        let t129 = t114 * t48 - t118 * t47 + t128;
+        let minus_rate_dot_1_leg2 = t115 * t129;
+        let minus_g1_vy_leg2 = t118 * t115;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t124 + minus_g1_vy_leg2 * t122;
+        let c2_leg2 = 2.079725827019258 * t18;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t115 * (t50 - t128 * c2_leg2);
+        let t157 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t161 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t127
+                + parameters[19] * t129)
             + c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t122
-                    + parameters[19] * t153);
-        let t158 = parameters[15]
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t127
+                    + parameters[19] * t157);
+        let t162 = parameters[15]
             - (parameters[12] * minus_rate_dot_1_leg2
                 + parameters[13] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
-            - parameters[11] * minus_rate_dot_1_leg2 - t157;
-        let t168 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t169 = ::overact::math::signed(parameters[20], rate_2_leg2)
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t153
-                + parameters[18] * t124) - t168;
-        let t170 = minus_g2_vx_leg2 * t169;
-        let t174 = pose[0] - t7 + 0.21213203435596426;
-        let t176 = pose[1] - t3 + 0.21213203435596426;
-        let t177 = t174 + t176;
-        let t178 = 1.4705882352941178 * t177;
-        let t179 = t174 - t176;
-        let t187 = 8.650519031141869
-            * (0.5 * (t179 * t179) - (t174 * t174 + t176 * t176 - 0.1156));
-        ::overact::guard::reach(t187, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t187);
+            - parameters[11] * minus_rate_dot_1_leg2 - t161;
+        let t172 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t173 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t157
+                + parameters[18] * t129) - t172;
+        let t174 = minus_g2_vx_leg2 * t173;
+        let t177 = 1.4705882352941178 * t14;
+        let t185 = 8.650519031141869
+            * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t185, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t185);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t189 = 0.7071067811865476 * minus_s2_leg3;
-        let t190 = t178 - t189;
-        let t191 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t190 * t191;
-        let t194 = t189 + t178;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t191;
-        let t198 = twist[0] + t25;
-        let t200 = twist[1] - t28;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t198 + minus_g2_vx_leg3 * t200;
-        let t203 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t205 = t190 * t34 + t194 * t35 + 0.34 * t203;
-        let minus_rate_dot_1_leg3 = t191 * t205;
-        let minus_g1_vy_leg3 = t194 * t191;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t198 + minus_g1_vy_leg3 * t200;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t191
-            * (t37 + 0.7071067811865476 * t177 * t203);
-        let minus_c2_leg3 = 2.079725827019258 * t177;
-        let t231 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t238 = minus_s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t203
-                + parameters[30] * t205)
+        let t187 = 0.7071067811865476 * minus_s2_leg3;
+        let t188 = t177 - t187;
+        let t189 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t188 * t189;
+        let t192 = t187 + t177;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t189;
+        let t196 = twist[0] + t37;
+        let t198 = twist[1] - t40;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t196 + minus_g2_vx_leg3 * t198;
+        let t201 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t202 = 0.34 * t201;
+        let t203 = t188 * t47 + t192 * t48 + t202;
+        let minus_rate_dot_1_leg3 = t189 * t203;
+        let minus_g1_vy_leg3 = t192 * t189;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t196 + minus_g1_vy_leg3 * t198;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t189
+            * (t50 + t202 * minus_c2_leg3);
+        let t228 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t235 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t201
+                + parameters[30] * t203)
             + minus_c2_leg3
-                * (parameters[30] * t231
-                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t203));
-        let t239 = parameters[26]
+                * (parameters[30] * t228
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t201));
+        let t236 = parameters[26]
             - (parameters[23] * minus_rate_dot_1_leg3
                 + parameters[24] * minus_rate_1_leg3
                 + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
-            - parameters[22] * minus_rate_dot_1_leg3 - t238;
-        let t249 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
-        let t250 = parameters[28] * t231 - parameters[27] * minus_rate_dot_2_leg3
-            - parameters[29] * t205
-            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t249;
-        let t251 = minus_g2_vx_leg3 * t250;
-        let t255 = pose[0] + t3 - 0.21213203435596426;
-        let t257 = pose[1] - t7 + 0.21213203435596426;
-        let t258 = t255 + t257;
-        let t266 = 8.650519031141869
-            * (0.5 * (t258 * t258) - (t255 * t255 + t257 * t257 - 0.1156));
-        ::overact::guard::reach(t266, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t266);
+            - parameters[22] * minus_rate_dot_1_leg3 - t235;
+        let t246 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
+        let t247 = parameters[28] * t228 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t203
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t246;
+        let t248 = minus_g2_vx_leg3 * t247;
+        let t251 = t12 + t16;
+        let t259 = 8.650519031141869
+            * (0.5 * (t251 * t251) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t259, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t259);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t268 = 1.0 / minus_s2_leg4;
-        let g2_vx_leg4 = 2.079725827019258 * t268;
-        let t270 = twist[0] + t28;
-        let t272 = twist[1] + t25;
-        let rate_2_leg4 = g2_vx_leg4 * t270 - g2_vx_leg4 * t272;
-        let t277 = t255 - t257;
-        let t279 = rate_2_leg4 * rate_2_leg4;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t268
-            * (t37 - 0.7071067811865476 * t277 * t279);
-        let c2_leg4 = 2.079725827019258 * t277;
-        let t286 = 1.4705882352941178 * t277;
-        let t287 = 0.7071067811865476 * minus_s2_leg4;
-        let t288 = t286 - t287;
-        let t290 = t287 + t286;
-        let t293 = 0.34 * t279 - (t288 * t35 + t290 * t34);
-        let minus_rate_dot_1_leg4 = t268 * t293;
-        let t295 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t302 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
-        let t303 = ::overact::math::signed(parameters[42], rate_2_leg4)
-            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t295
-                + parameters[40] * t293) - t302;
-        let t304 = g2_vx_leg4 * t303;
-        let minus_g1_vx_leg4 = t288 * t268;
-        let g1_vy_leg4 = t290 * t268;
-        let rate_1_leg4 = g1_vy_leg4 * t272 - minus_g1_vx_leg4 * t270;
-        let t330 = minus_s2_leg4
-            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t279
-                + parameters[41] * t293)
+        let t261 = 1.0 / minus_s2_leg4;
+        let g2_vx_leg4 = 2.079725827019258 * t261;
+        let t263 = twist[0] + t40;
+        let t265 = twist[1] + t37;
+        let rate_2_leg4 = g2_vx_leg4 * t263 - g2_vx_leg4 * t265;
+        let t270 = t12 - t16;
+        let c2_leg4 = 2.079725827019258 * t270;
+        let t272 = rate_2_leg4 * rate_2_leg4;
+        let t273 = 0.34 * t272;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t261 * (t50 - c2_leg4 * t273);
+        let t278 = 1.4705882352941178 * t270;
+        let t279 = 0.7071067811865476 * minus_s2_leg4;
+        let t280 = t278 - t279;
+        let t282 = t279 + t278;
+        let t285 = t273 - (t280 * t48 + t282 * t47);
+        let minus_rate_dot_1_leg4 = t261 * t285;
+        let t287 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t294 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t295 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t287
+                + parameters[40] * t285) - t294;
+        let t296 = g2_vx_leg4 * t295;
+        let minus_g1_vx_leg4 = t280 * t261;
+        let g1_vy_leg4 = t282 * t261;
+        let rate_1_leg4 = g1_vy_leg4 * t265 - minus_g1_vx_leg4 * t263;
+        let t322 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t272
+                + parameters[41] * t285)
             + c2_leg4
-                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t279
-                    + parameters[41] * t295);
-        let t331 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
+                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t272
+                    + parameters[41] * t287);
+        let t323 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            - parameters[33] * minus_rate_dot_1_leg4 - t330;
-        let t334 = t62 - minus_g1_vx_leg1 * t89 - (minus_g1_vx_leg2 * t158 + t170)
-            - (minus_g1_vx_leg3 * t239 + t251) + t304 - minus_g1_vx_leg4 * t331;
-        let t335 = twist[2] * twist[2];
-        let t336 = parameters[46] * t335;
-        let t338 = parameters[45] * t335;
-        let t352 = g1_vy_leg1 * t89 + t62 + t170 - minus_g1_vy_leg2 * t158
-            - (minus_g1_vy_leg3 * t239 + t251) + g1_vy_leg4 * t331 - t304;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t20 - t2 * t20);
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t110 - t2 * t110);
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t191 - t2 * t191);
-        let t391 = g1_wz_leg1 * t89 + g2_wz_leg1 * t61 + t60 + g1_wz_leg2 * t158
-            + g2_wz_leg2 * t169 + t168 + g1_wz_leg3 * t239 + g2_wz_leg3 * t250 + t249;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t268 - t2 * t268);
+            - parameters[33] * minus_rate_dot_1_leg4 - t322;
+        let t326 = t73 - minus_g1_vx_leg1 * t100 - (minus_g1_vx_leg2 * t162 + t174)
+            - (minus_g1_vx_leg3 * t236 + t248) + t296 - minus_g1_vx_leg4 * t323;
+        let t327 = twist[2] * twist[2];
+        let t328 = s_phi * t327;
+        let t330 = c_phi * t327;
+        let t344 = g1_vy_leg1 * t100 + t73 + t174 - minus_g1_vy_leg2 * t162
+            - (minus_g1_vy_leg3 * t236 + t248) + g1_vy_leg4 * t323 - t296;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t32 - t6 * t32);
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t115 - t6 * t115);
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t189 - t6 * t189);
+        let t383 = g1_wz_leg1 * t100 + g2_wz_leg1 * t72 + t71 + g1_wz_leg2 * t162
+            + g2_wz_leg2 * t173 + t172 + g1_wz_leg3 * t236 + g2_wz_leg3 * t247 + t246;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t261 - t6 * t261);
         Ok([
-            t334 + s_phi * t336 - c_phi * t338, t352 - (s_phi * t338 + c_phi * t336),
-            t391 + g1_wz_leg4 * t331 + g2_wz_leg4 * t303 + t302,
+            t326 + parameters[46] * t328 - parameters[45] * t330,
+            t344 - (parameters[45] * t328 + parameters[46] * t330),
+            t383 + g1_wz_leg4 * t323 + g2_wz_leg4 * t295 + t294,
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -5966,7 +5955,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 570 operations (255 additions, 307 multiplications, 8 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 585 intermediates.
+    /// 559 operations (248 additions, 303 multiplications, 8 divisions), 5 square roots, 1 trigonometric pairs, 12 signs, 574 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5978,276 +5967,283 @@ impl Planar4Prr {
         preload: &[f64; 1],
     ) -> Result<[f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t2 = s_phi + c_phi;
+        let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t6 = c_phi - s_phi;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t6 = s_phi + c_phi;
         let t7 = 0.05656854249492381 * t6;
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t21 = t9 + t5;
-        let t22 = 1.4705882352941178 * t21;
-        let t23 = t20 - t22;
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t23 * t24;
-        let t28 = pose[0] - t3 + 0.21213203435596426;
-        let t30 = pose[1] + t7 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t32 = 0.7071067811865476 * minus_s2_leg1;
+        let t33 = t21 + t19;
+        let t34 = 1.4705882352941178 * t33;
+        let t35 = t32 - t34;
+        let t36 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t35 * t36;
+        let t46 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t42 = t30 - t28;
-        let t43 = 1.4705882352941178 * t42;
-        let t44 = t41 + t43;
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t44 * t45;
-        let t50 = pose[0] - t7 + 0.21213203435596426;
-        let t52 = pose[1] - t3 + 0.21213203435596426;
-        let t53 = t50 - t52;
-        let t61 = 8.650519031141869
-            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
-        ::overact::guard::reach(t61, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        let t48 = 0.7071067811865476 * minus_s2_leg2;
+        let t49 = 1.4705882352941178 * t18;
+        let t50 = t48 + t49;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t50 * t51;
+        let t62 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t62, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t63 = 0.7071067811865476 * minus_s2_leg3;
-        let t64 = t50 + t52;
-        let t65 = 1.4705882352941178 * t64;
-        let t66 = t63 + t65;
+        let t64 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * t14;
+        let t66 = t64 + t65;
         let t67 = 1.0 / minus_s2_leg3;
         let minus_g1_vy_leg3 = t66 * t67;
-        let t72 = pose[0] + t3 - 0.21213203435596426;
-        let t74 = pose[1] - t7 + 0.21213203435596426;
-        let t75 = t72 + t74;
-        let t83 = 8.650519031141869
-            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t83, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        let t71 = t12 + t16;
+        let t79 = 8.650519031141869
+            * (0.5 * (t71 * t71) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t79, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t79);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t85 = 0.7071067811865476 * minus_s2_leg4;
-        let t86 = t72 - t74;
-        let t87 = 1.4705882352941178 * t86;
-        let t88 = t85 + t87;
-        let t89 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t88 * t89;
-        let t93 = t41 - t43;
-        let minus_g1_vx_leg2 = t93 * t45;
-        let t96 = t22 + t20;
-        let minus_g1_vx_leg1 = t96 * t24;
-        let t100 = t65 - t63;
-        let minus_g1_vx_leg3 = t100 * t67;
-        let t104 = t87 - t85;
-        let minus_g1_vx_leg4 = t104 * t89;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        let t81 = 0.7071067811865476 * minus_s2_leg4;
+        let t82 = t12 - t16;
+        let t83 = 1.4705882352941178 * t82;
+        let t84 = t81 + t83;
+        let t85 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t84 * t85;
+        let t89 = t48 - t49;
+        let minus_g1_vx_leg2 = t89 * t51;
+        let t92 = t34 + t32;
+        let minus_g1_vx_leg1 = t92 * t36;
+        let t96 = t65 - t64;
+        let minus_g1_vx_leg3 = t96 * t67;
+        let t100 = t83 - t81;
+        let minus_g1_vx_leg4 = t100 * t85;
+        let t103 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t110 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = t103 * t111;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t103 * t112;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t120 = t7 * acceleration[2];
-        let t122 = t3 * twist[2];
-        let t123 = twist[2] * t122;
-        let t124 = acceleration[1] + t120 - t123;
-        let t126 = t3 * acceleration[2];
-        let t128 = t7 * twist[2];
-        let t129 = twist[2] * t128;
-        let t130 = acceleration[0] - t126 - t129;
-        let g2_vx_leg1 = 2.079725827019258 * t24;
-        let t134 = twist[0] - t122;
-        let t136 = twist[1] + t128;
-        let rate_2_leg1 = g2_vx_leg1 * t134 + g2_vx_leg1 * t136;
-        let t139 = rate_2_leg1 * rate_2_leg1;
-        let t141 = t23 * t124 - t96 * t130 - 0.34 * t139;
-        let rate_dot_1_leg1 = t24 * t141;
-        let rate_1_leg1 = g1_vy_leg1 * t136 - minus_g1_vx_leg1 * t134;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t24
-            * (0.7071067811865476 * (t130 + t124) + 0.7071067811865476 * t21 * t139);
-        let c2_leg1 = 2.079725827019258 * t21;
-        let t171 = c2_leg1 * rate_dot_1_leg1;
-        let t175 = minus_s2_leg1
-            * (parameters[6] * t139 + parameters[7] * rate_dot_2_leg1
-                + parameters[8] * t141)
+        let t116 = t7 * acceleration[2];
+        let t118 = t3 * twist[2];
+        let t119 = twist[2] * t118;
+        let t120 = acceleration[0] + t116 + t119;
+        let t121 = t3 * acceleration[2];
+        let t123 = t7 * twist[2];
+        let t124 = twist[2] * t123;
+        let t125 = acceleration[1] - t121 + t124;
+        let t126 = t120 + t125;
+        let t128 = acceleration[1] + t116 + t119;
+        let t129 = t126 - t128;
+        let t131 = acceleration[1] - t116 - t119;
+        let t132 = t129 - t131;
+        let t133 = t120 - t132;
+        let t136 = acceleration[0] + t121 - t124;
+        let t137 = t128 - t136;
+        let t138 = t125 - t137;
+        let g2_vx_leg1 = 2.079725827019258 * t36;
+        let t142 = twist[0] - t123;
+        let t144 = twist[1] + t118;
+        let rate_2_leg1 = g2_vx_leg1 * t142 + g2_vx_leg1 * t144;
+        let t147 = rate_2_leg1 * rate_2_leg1;
+        let t148 = 0.34 * t147;
+        let t149 = t35 * t133 - t92 * t138 - t148;
+        let rate_dot_1_leg1 = t36 * t149;
+        let rate_1_leg1 = g1_vy_leg1 * t144 - minus_g1_vx_leg1 * t142;
+        let c2_leg1 = 2.079725827019258 * t33;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t36
+            * (0.7071067811865476 * (t138 + t133) + t148 * c2_leg1);
+        let t178 = c2_leg1 * rate_dot_1_leg1;
+        let t182 = minus_s2_leg1
+            * (parameters[6] * t147 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t149)
             + c2_leg1
-                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t139
-                    + parameters[8] * t171);
-        let t176 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t147
+                    + parameters[8] * t178);
+        let t183 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t175;
-        let t186 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t187 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t171
-            + parameters[7] * t141 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t186;
-        let t188 = g2_vx_leg1 * t187;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t45;
-        let t191 = twist[1] - t122;
-        let t193 = twist[0] - t128;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t191 - minus_g2_vx_leg2 * t193;
-        let t199 = acceleration[0] - t120 + t123;
-        let t201 = acceleration[1] - t126 - t129;
-        let t205 = rate_2_leg2 * rate_2_leg2;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t45
-            * (0.7071067811865476 * (t199 - t201) - 0.7071067811865476 * t42 * t205);
-        let c2_leg2 = 2.079725827019258 * t42;
-        let t215 = t93 * t199 + t44 * t201 + 0.34 * t205;
-        let minus_rate_dot_1_leg2 = t45 * t215;
-        let t217 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t224 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t225 = ::overact::math::signed(parameters[20], rate_2_leg2)
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t217
-                + parameters[18] * t215) - t224;
-        let t226 = minus_g2_vx_leg2 * t225;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t191;
-        let t250 = minus_s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t205
-                + parameters[19] * t215)
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t182;
+        let t193 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t194 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t178
+            + parameters[7] * t149 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t193;
+        let t195 = g2_vx_leg1 * t194;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t51;
+        let t198 = twist[1] - t123;
+        let t200 = twist[0] - t118;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t198 - minus_g2_vx_leg2 * t200;
+        let c2_leg2 = 2.079725827019258 * t18;
+        let t207 = rate_2_leg2 * rate_2_leg2;
+        let t208 = 0.34 * t207;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t51
+            * (0.7071067811865476 * t132 - c2_leg2 * t208);
+        let t216 = t89 * t129 + t50 * t131 + t208;
+        let minus_rate_dot_1_leg2 = t51 * t216;
+        let t218 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t225 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t226 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t218
+                + parameters[18] * t216) - t225;
+        let t227 = minus_g2_vx_leg2 * t226;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t198;
+        let t251 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t207
+                + parameters[19] * t216)
             + c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t205
-                    + parameters[19] * t217);
-        let t251 = parameters[15]
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t207
+                    + parameters[19] * t218);
+        let t252 = parameters[15]
             - (parameters[12] * minus_rate_dot_1_leg2
                 + parameters[13] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
-            - parameters[11] * minus_rate_dot_1_leg2 - t250;
-        let t256 = acceleration[0] + t126 + t129;
-        let t259 = acceleration[1] - t120 + t123;
+            - parameters[11] * minus_rate_dot_1_leg2 - t251;
         let minus_g2_vx_leg3 = 2.079725827019258 * t67;
-        let t263 = twist[0] + t122;
-        let t265 = twist[1] - t128;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vx_leg3 * t265;
-        let t268 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t270 = t100 * t256 + t66 * t259 + 0.34 * t268;
-        let minus_rate_dot_1_leg3 = t67 * t270;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t263 + minus_g1_vy_leg3 * t265;
+        let t260 = twist[0] + t123;
+        let t262 = twist[1] - t118;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t260 + minus_g2_vx_leg3 * t262;
+        let t265 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t266 = 0.34 * t265;
+        let t267 = t96 * t120 + t66 * t125 + t266;
+        let minus_rate_dot_1_leg3 = t67 * t267;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t260 + minus_g1_vy_leg3 * t262;
+        let minus_c2_leg3 = 2.079725827019258 * t14;
         let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
-            * (0.7071067811865476 * (t256 + t259) + 0.7071067811865476 * t64 * t268);
-        let minus_c2_leg3 = 2.079725827019258 * t64;
-        let t297 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t304 = minus_s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t268
-                + parameters[30] * t270)
+            * (0.7071067811865476 * t126 + t266 * minus_c2_leg3);
+        let t292 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t299 = minus_s2_leg3
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t265
+                + parameters[30] * t267)
             + minus_c2_leg3
-                * (parameters[30] * t297
-                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t268));
-        let t305 = parameters[26]
+                * (parameters[30] * t292
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t265));
+        let t300 = parameters[26]
             - (parameters[23] * minus_rate_dot_1_leg3
                 + parameters[24] * minus_rate_1_leg3
                 + ::overact::math::signed(parameters[25], minus_rate_1_leg3))
-            - parameters[22] * minus_rate_dot_1_leg3 - t304;
-        let t315 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
-        let t316 = parameters[28] * t297 - parameters[27] * minus_rate_dot_2_leg3
-            - parameters[29] * t270
-            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t315;
-        let t317 = minus_g2_vx_leg3 * t316;
-        let t320 = twist[1] + t122;
-        let t322 = twist[0] + t128;
-        let rate_1_leg4 = g1_vy_leg4 * t320 - minus_g1_vx_leg4 * t322;
-        let t327 = acceleration[0] + t120 - t123;
-        let t330 = acceleration[1] + t126 + t129;
-        let g2_vx_leg4 = 2.079725827019258 * t89;
-        let rate_2_leg4 = g2_vx_leg4 * t322 - g2_vx_leg4 * t320;
-        let t337 = rate_2_leg4 * rate_2_leg4;
-        let t339 = t104 * t327 - t88 * t330 + 0.34 * t337;
-        let minus_rate_dot_1_leg4 = t89 * t339;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t89
-            * (0.7071067811865476 * (t330 - t327) - 0.7071067811865476 * t86 * t337);
-        let c2_leg4 = 2.079725827019258 * t86;
-        let t365 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t369 = minus_s2_leg4
-            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t337
-                + parameters[41] * t339)
+            - parameters[22] * minus_rate_dot_1_leg3 - t299;
+        let t310 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
+        let t311 = parameters[28] * t292 - parameters[27] * minus_rate_dot_2_leg3
+            - parameters[29] * t267
+            - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t310;
+        let t312 = minus_g2_vx_leg3 * t311;
+        let t315 = twist[1] + t123;
+        let t317 = twist[0] + t118;
+        let rate_1_leg4 = g1_vy_leg4 * t315 - minus_g1_vx_leg4 * t317;
+        let g2_vx_leg4 = 2.079725827019258 * t85;
+        let rate_2_leg4 = g2_vx_leg4 * t317 - g2_vx_leg4 * t315;
+        let t328 = rate_2_leg4 * rate_2_leg4;
+        let t329 = 0.34 * t328;
+        let t330 = t100 * t136 - t84 * t128 + t329;
+        let minus_rate_dot_1_leg4 = t85 * t330;
+        let c2_leg4 = 2.079725827019258 * t82;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t85
+            * (0.7071067811865476 * t137 - t329 * c2_leg4);
+        let t354 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t358 = minus_s2_leg4
+            * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t328
+                + parameters[41] * t330)
             + c2_leg4
-                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t337
-                    + parameters[41] * t365);
-        let t370 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
+                * (parameters[39] * minus_rate_dot_2_leg4 + parameters[40] * t328
+                    + parameters[41] * t354);
+        let t359 = parameters[35] * rate_1_leg4 - parameters[34] * minus_rate_dot_1_leg4
             + ::overact::math::signed(parameters[36], rate_1_leg4) + parameters[37]
-            - parameters[33] * minus_rate_dot_1_leg4 - t369;
-        let t380 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
-        let t381 = ::overact::math::signed(parameters[42], rate_2_leg4)
-            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t365
-                + parameters[40] * t339) - t380;
-        let t382 = g2_vx_leg4 * t381;
-        let t384 = g1_vy_leg1 * t176 + t188 + t226 - minus_g1_vy_leg2 * t251
-            - (minus_g1_vy_leg3 * t305 + t317) + g1_vy_leg4 * t370 - t382;
-        let t387 = c_phi * acceleration[0] + s_phi * acceleration[1];
-        let t389 = twist[2] * twist[2];
-        let t393 = parameters[47] * t387
-            - (parameters[45] * t389 + acceleration[2] * parameters[46]);
-        let t400 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t402 = acceleration[2] * parameters[45] - parameters[46] * t389
-            + parameters[47] * t400;
-        let t416 = t188 - minus_g1_vx_leg1 * t176 - (minus_g1_vx_leg2 * t251 + t226)
-            - (minus_g1_vx_leg3 * t305 + t317) + t382 - minus_g1_vx_leg4 * t370;
-        let t420 = t416 + c_phi * t393 - s_phi * t402;
-        let t422 = t384 + s_phi * t393 + c_phi * t402 - t420 * t116;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t449 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            - parameters[33] * minus_rate_dot_1_leg4 - t358;
+        let t369 = ::overact::math::signed(parameters[43], twist[2] - rate_2_leg4);
+        let t370 = ::overact::math::signed(parameters[42], rate_2_leg4)
+            - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t354
+                + parameters[40] * t330) - t369;
+        let t371 = g2_vx_leg4 * t370;
+        let t373 = g1_vy_leg1 * t183 + t195 + t227 - minus_g1_vy_leg2 * t252
+            - (minus_g1_vy_leg3 * t300 + t312) + g1_vy_leg4 * t359 - t371;
+        let t375 = twist[2] * twist[2];
+        let t378 = s_phi * t375 - c_phi * acceleration[2];
+        let t382 = c_phi * t375 + s_phi * acceleration[2];
+        let t397 = t195 - minus_g1_vx_leg1 * t183 - (minus_g1_vx_leg2 * t252 + t227)
+            - (minus_g1_vx_leg3 * t300 + t312) + t371 - minus_g1_vx_leg4 * t359;
+        let t403 = t397 + parameters[46] * t378 - parameters[45] * t382
+            + acceleration[0] * parameters[47];
+        let t405 = t373 + acceleration[1] * parameters[47]
+            - (parameters[45] * t378 + parameters[46] * t382) - t403 * t112;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t432 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t450 = t449 * t115;
-        let t452 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t450;
-        let t453 = t452 * t119;
-        let t464 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t449 * t450
-            - t452 * t453;
-        ::overact::guard::platform(t464, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t464, 0.02560000000000001, "actuators")?;
-        let t465 = 1.0 / t464;
-        let g2_wz_leg1 = 0.11764705882352941 * (t6 * t24 - t2 * t24);
-        let g2_wz_leg2 = 0.11764705882352941 * (t6 * t45 - t2 * t45);
-        let g2_wz_leg3 = 0.11764705882352941 * (t6 * t67 - t2 * t67);
-        let t491 = g1_wz_leg1 * t176 + g2_wz_leg1 * t187 + t186 + g1_wz_leg2 * t251
-            + g2_wz_leg2 * t225 + t224 + g1_wz_leg3 * t305 + g2_wz_leg3 * t316 + t315;
-        let g2_wz_leg4 = 0.11764705882352941 * (t6 * t89 - t2 * t89);
-        let t506 = t491 + g1_wz_leg4 * t370 + g2_wz_leg4 * t381 + t380
-            + acceleration[2] * parameters[44] + parameters[45] * t400
-            - parameters[46] * t387;
-        let t511 = t465 * (t506 + t420 * t450 - t453 * t422);
-        let t513 = t119 * t422 - t453 * t511;
-        let t519 = t420 * t115 - t116 * t513 + t450 * t511;
-        let t525 = g1_vy_leg4 + minus_g1_vx_leg4 * t116;
-        let t531 = t465 * (g1_wz_leg4 - minus_g1_vx_leg4 * t450 - t453 * t525);
-        let t533 = t119 * t525 - t453 * t531;
-        let t539 = t450 * t531 - (minus_g1_vx_leg4 * t115 + t116 * t533);
-        let t549 = 1.0
-            - (g1_vy_leg4 * t533 - minus_g1_vx_leg4 * t539 + g1_wz_leg4 * t531);
-        let t551 = 1.0 / ::overact::math::sqrt(t549);
-        let t554 = g1_vy_leg1 * t513 - minus_g1_vx_leg1 * t519 + g1_wz_leg1 * t511
+        let t433 = t432 * t111;
+        let t435 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t103 * t433;
+        let t436 = t435 * t115;
+        let t447 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t432 * t433
+            - t435 * t436;
+        ::overact::guard::platform(t447, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t447, 0.02560000000000001, "actuators")?;
+        let t448 = 1.0 / t447;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t36 - t6 * t36);
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t51 - t6 * t51);
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t67 - t6 * t67);
+        let t474 = g1_wz_leg1 * t183 + g2_wz_leg1 * t194 + t193 + g1_wz_leg2 * t252
+            + g2_wz_leg2 * t226 + t225 + g1_wz_leg3 * t300 + g2_wz_leg3 * t311 + t310;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t85 - t6 * t85);
+        let t494 = acceleration[2] * parameters[44]
+            + parameters[45] * (c_phi * acceleration[1] - s_phi * acceleration[0])
+            - parameters[46] * (s_phi * acceleration[1] + c_phi * acceleration[0]);
+        let t499 = t474 + g1_wz_leg4 * t359 + g2_wz_leg4 * t370 + t369 + t494
+            + t403 * t433 - t436 * t405;
+        let t500 = t448 * t499;
+        let t502 = t115 * t405 - t436 * t500;
+        let t508 = t403 * t111 - t112 * t502 + t433 * t500;
+        let t514 = g1_vy_leg4 + minus_g1_vx_leg4 * t112;
+        let t520 = t448 * (g1_wz_leg4 - minus_g1_vx_leg4 * t433 - t436 * t514);
+        let t522 = t115 * t514 - t436 * t520;
+        let t528 = t433 * t520 - (minus_g1_vx_leg4 * t111 + t112 * t522);
+        let t538 = 1.0
+            - (g1_vy_leg4 * t522 - minus_g1_vx_leg4 * t528 + g1_wz_leg4 * t520);
+        let t540 = 1.0 / ::overact::math::sqrt(t538);
+        let t543 = g1_vy_leg1 * t502 - minus_g1_vx_leg1 * t508 + g1_wz_leg1 * t500
             - preload[0]
-                * ((g1_vy_leg1 * t533 - minus_g1_vx_leg1 * t539 + g1_wz_leg1 * t531)
-                    * t551);
-        let t567 = g1_wz_leg2 * t511
-            - (minus_g1_vx_leg2 * t519 + minus_g1_vy_leg2 * t513)
+                * ((g1_vy_leg1 * t522 - minus_g1_vx_leg1 * t528 + g1_wz_leg1 * t520)
+                    * t540);
+        let t556 = g1_wz_leg2 * t500
+            - (minus_g1_vx_leg2 * t508 + minus_g1_vy_leg2 * t502)
             - preload[0]
-                * ((g1_wz_leg2 * t531
-                    - (minus_g1_vx_leg2 * t539 + minus_g1_vy_leg2 * t533)) * t551);
-        let t580 = g1_wz_leg3 * t511
-            - (minus_g1_vx_leg3 * t519 + minus_g1_vy_leg3 * t513)
+                * ((g1_wz_leg2 * t520
+                    - (minus_g1_vx_leg2 * t528 + minus_g1_vy_leg2 * t522)) * t540);
+        let t569 = g1_wz_leg3 * t500
+            - (minus_g1_vx_leg3 * t508 + minus_g1_vy_leg3 * t502)
             - preload[0]
-                * ((g1_wz_leg3 * t531
-                    - (minus_g1_vx_leg3 * t539 + minus_g1_vy_leg3 * t533)) * t551);
+                * ((g1_wz_leg3 * t520
+                    - (minus_g1_vx_leg3 * t528 + minus_g1_vy_leg3 * t522)) * t540);
         Ok([
-            t554, t567, t580,
-            g1_vy_leg4 * t513 - minus_g1_vx_leg4 * t519 + g1_wz_leg4 * t511
-                + preload[0] * (t549 * t551),
+            t543, t556, t569,
+            g1_vy_leg4 * t502 - minus_g1_vx_leg4 * t508 + g1_wz_leg4 * t500
+                + preload[0] * (t538 * t540),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -6258,7 +6254,7 @@ impl Planar4Prr {
     ///
     /// Output: 4.
     ///
-    /// 211 operations (95 additions, 109 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 213 intermediates.
+    /// 207 operations (91 additions, 109 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 209 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6267,101 +6263,103 @@ impl Planar4Prr {
         torques: &[f64; 4],
     ) -> Result<[f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t22 = 1.4705882352941178 * (t9 + t5);
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = (t20 - t22) * t24;
-        let t28 = pose[0] - t3 + 0.21213203435596426;
-        let t30 = pose[1] + t7 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t32 = 0.7071067811865476 * minus_s2_leg1;
+        let t34 = 1.4705882352941178 * (t21 + t19);
+        let t36 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t32 - t34) * t36;
+        let t46 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t43 = 1.4705882352941178 * (t30 - t28);
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = (t41 + t43) * t45;
-        let t50 = pose[0] - t7 + 0.21213203435596426;
-        let t52 = pose[1] - t3 + 0.21213203435596426;
-        let t53 = t50 - t52;
-        let t61 = 8.650519031141869
-            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
-        ::overact::guard::reach(t61, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        let t48 = 0.7071067811865476 * minus_s2_leg2;
+        let t49 = 1.4705882352941178 * t18;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = (t48 + t49) * t51;
+        let t62 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t62, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t63 = 0.7071067811865476 * minus_s2_leg3;
-        let t65 = 1.4705882352941178 * (t50 + t52);
+        let t64 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * t14;
         let t67 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = (t63 + t65) * t67;
-        let t72 = pose[0] + t3 - 0.21213203435596426;
-        let t74 = pose[1] - t7 + 0.21213203435596426;
-        let t75 = t72 + t74;
-        let t83 = 8.650519031141869
-            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t83, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        let minus_g1_vy_leg3 = (t64 + t65) * t67;
+        let t71 = t12 + t16;
+        let t79 = 8.650519031141869
+            * (0.5 * (t71 * t71) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t79, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t79);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t85 = 0.7071067811865476 * minus_s2_leg4;
-        let t87 = 1.4705882352941178 * (t72 - t74);
-        let t89 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = (t85 + t87) * t89;
-        let minus_g1_vx_leg2 = (t41 - t43) * t45;
-        let minus_g1_vx_leg1 = (t22 + t20) * t24;
-        let minus_g1_vx_leg3 = (t65 - t63) * t67;
-        let minus_g1_vx_leg4 = (t87 - t85) * t89;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        let t81 = 0.7071067811865476 * minus_s2_leg4;
+        let t83 = 1.4705882352941178 * (t12 - t16);
+        let t85 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t81 + t83) * t85;
+        let minus_g1_vx_leg2 = (t48 - t49) * t51;
+        let minus_g1_vx_leg1 = (t34 + t32) * t36;
+        let minus_g1_vx_leg3 = (t65 - t64) * t67;
+        let minus_g1_vx_leg4 = (t83 - t81) * t85;
+        let t103 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t110 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = t103 * t111;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t103 * t112;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t133 = minus_g1_vx_leg1 * torques[0] + minus_g1_vx_leg2 * torques[1]
+        let t129 = minus_g1_vx_leg1 * torques[0] + minus_g1_vx_leg2 * torques[1]
             + minus_g1_vx_leg3 * torques[2] + minus_g1_vx_leg4 * torques[3];
-        let t135 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] + g1_vy_leg4 * torques[3] + t133 * t116;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t162 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t131 = g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] + g1_vy_leg4 * torques[3] + t129 * t112;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t158 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t163 = t162 * t115;
-        let t165 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t163;
-        let t166 = t165 * t119;
-        let t177 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t162 * t163
-            - t165 * t166;
-        ::overact::guard::platform(t177, 0.02560000000000001, "actuators")?;
-        let t188 = g1_wz_leg1 * torques[0] + g1_wz_leg2 * torques[1]
-            + g1_wz_leg3 * torques[2] + g1_wz_leg4 * torques[3] - t133 * t163
-            - t166 * t135;
-        let t189 = t188 / t177;
-        let t191 = t119 * t135 - t166 * t189;
-        let t197 = t163 * t189 - (t133 * t115 + t116 * t191);
+        let t159 = t158 * t111;
+        let t161 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t103 * t159;
+        let t162 = t161 * t115;
+        let t173 = g1_wz_leg1 * torques[0] + g1_wz_leg2 * torques[1]
+            + g1_wz_leg3 * torques[2] + g1_wz_leg4 * torques[3] - t129 * t159
+            - t162 * t131;
+        let t184 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t158 * t159
+            - t161 * t162;
+        ::overact::guard::platform(t184, 0.02560000000000001, "actuators")?;
+        let t185 = t173 / t184;
+        let t187 = t115 * t131 - t162 * t185;
+        let t193 = t159 * t185 - (t129 * t111 + t112 * t187);
         Ok([
-            g1_vy_leg1 * t191 - minus_g1_vx_leg1 * t197 + g1_wz_leg1 * t189,
-            g1_wz_leg2 * t189 - (minus_g1_vx_leg2 * t197 + minus_g1_vy_leg2 * t191),
-            g1_wz_leg3 * t189 - (minus_g1_vx_leg3 * t197 + minus_g1_vy_leg3 * t191),
-            g1_vy_leg4 * t191 - minus_g1_vx_leg4 * t197 + g1_wz_leg4 * t189,
+            g1_vy_leg1 * t187 - minus_g1_vx_leg1 * t193 + g1_wz_leg1 * t185,
+            g1_wz_leg2 * t185 - (minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t187),
+            g1_wz_leg3 * t185 - (minus_g1_vx_leg3 * t193 + minus_g1_vy_leg3 * t187),
+            g1_vy_leg4 * t187 - minus_g1_vx_leg4 * t193 + g1_wz_leg4 * t185,
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -6371,113 +6369,115 @@ impl Planar4Prr {
     ///
     /// Output: 4 x 1.
     ///
-    /// 196 operations (87 additions, 101 multiplications, 8 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 199 intermediates.
+    /// 192 operations (83 additions, 101 multiplications, 8 divisions), 5 square roots, 1 trigonometric pairs, 0 signs, 195 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t5 = pose[1] + t3 - 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[0] + t7 - 0.21213203435596426;
+        let t3 = 0.05656854249492381 * (c_phi - s_phi);
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (s_phi + c_phi);
+        let t9 = pose[1] - t7 + 0.21213203435596426;
         let t10 = t5 - t9;
-        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t12 = pose[0] + t7 - 0.21213203435596426;
+        let t13 = t12 - t10;
+        let t14 = t5 + t9;
+        let t16 = pose[1] - t3 + 0.21213203435596426;
+        let t17 = t14 - t16;
+        let t18 = t13 - t17;
+        let t19 = t18 + t5;
+        let t20 = t17 + t13;
+        let t21 = t20 - t9;
+        let t22 = t19 - t21;
+        let t30 = 8.650519031141869
+            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
+        ::overact::guard::reach(t30, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t22 = 1.4705882352941178 * (t9 + t5);
-        let t24 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = (t20 - t22) * t24;
-        let t28 = pose[0] - t3 + 0.21213203435596426;
-        let t30 = pose[1] + t7 - 0.21213203435596426;
-        let t31 = t28 + t30;
-        let t39 = 8.650519031141869
-            * (0.5 * (t31 * t31) - (t28 * t28 + t30 * t30 - 0.1156));
-        ::overact::guard::reach(t39, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t39);
+        let t32 = 0.7071067811865476 * minus_s2_leg1;
+        let t34 = 1.4705882352941178 * (t21 + t19);
+        let t36 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t32 - t34) * t36;
+        let t46 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t46, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t41 = 0.7071067811865476 * minus_s2_leg2;
-        let t43 = 1.4705882352941178 * (t30 - t28);
-        let t45 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = (t41 + t43) * t45;
-        let t50 = pose[0] - t7 + 0.21213203435596426;
-        let t52 = pose[1] - t3 + 0.21213203435596426;
-        let t53 = t50 - t52;
-        let t61 = 8.650519031141869
-            * (0.5 * (t53 * t53) - (t50 * t50 + t52 * t52 - 0.1156));
-        ::overact::guard::reach(t61, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t61);
+        let t48 = 0.7071067811865476 * minus_s2_leg2;
+        let t49 = 1.4705882352941178 * t18;
+        let t51 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = (t48 + t49) * t51;
+        let t62 = 8.650519031141869 * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
+        ::overact::guard::reach(t62, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t63 = 0.7071067811865476 * minus_s2_leg3;
-        let t65 = 1.4705882352941178 * (t50 + t52);
+        let t64 = 0.7071067811865476 * minus_s2_leg3;
+        let t65 = 1.4705882352941178 * t14;
         let t67 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = (t63 + t65) * t67;
-        let t72 = pose[0] + t3 - 0.21213203435596426;
-        let t74 = pose[1] - t7 + 0.21213203435596426;
-        let t75 = t72 + t74;
-        let t83 = 8.650519031141869
-            * (0.5 * (t75 * t75) - (t72 * t72 + t74 * t74 - 0.1156));
-        ::overact::guard::reach(t83, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t83);
+        let minus_g1_vy_leg3 = (t64 + t65) * t67;
+        let t71 = t12 + t16;
+        let t79 = 8.650519031141869
+            * (0.5 * (t71 * t71) - (t12 * t12 + t16 * t16 - 0.1156));
+        ::overact::guard::reach(t79, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t79);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t85 = 0.7071067811865476 * minus_s2_leg4;
-        let t87 = 1.4705882352941178 * (t72 - t74);
-        let t89 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = (t85 + t87) * t89;
-        let minus_g1_vx_leg2 = (t41 - t43) * t45;
-        let minus_g1_vx_leg1 = (t22 + t20) * t24;
-        let minus_g1_vx_leg3 = (t65 - t63) * t67;
-        let minus_g1_vx_leg4 = (t87 - t85) * t89;
-        let t107 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        let t81 = 0.7071067811865476 * minus_s2_leg4;
+        let t83 = 1.4705882352941178 * (t12 - t16);
+        let t85 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = (t81 + t83) * t85;
+        let minus_g1_vx_leg2 = (t48 - t49) * t51;
+        let minus_g1_vx_leg1 = (t34 + t32) * t36;
+        let minus_g1_vx_leg3 = (t65 - t64) * t67;
+        let minus_g1_vx_leg4 = (t83 - t81) * t85;
+        let t103 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t114 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t110 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t110, 3.440476190476192, "actuators")?;
+        let t111 = 1.0 / t110;
+        let t112 = t103 * t111;
+        let t114 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t103 * t112;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         let t115 = 1.0 / t114;
-        let t116 = t107 * t115;
-        let t118 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t107 * t116;
-        ::overact::guard::platform(t118, 3.440476190476192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t121 = g1_vy_leg4 + minus_g1_vx_leg4 * t116;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t148 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t117 = g1_vy_leg4 + minus_g1_vx_leg4 * t112;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
+        let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
+        let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t144 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t149 = t148 * t115;
-        let t151 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t107 * t149;
-        let t152 = t151 * t119;
+        let t145 = t144 * t111;
+        let t147 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t103 * t145;
+        let t148 = t147 * t115;
         let t163 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t148 * t149
-            - t151 * t152;
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t144 * t145
+            - t147 * t148;
         ::overact::guard::platform(t163, 0.02560000000000001, "actuators")?;
-        let t168 = (g1_wz_leg4 - minus_g1_vx_leg4 * t149 - t152 * t121) / t163;
-        let t170 = t119 * t121 - t152 * t168;
-        let t176 = t149 * t168 - (minus_g1_vx_leg4 * t115 + t116 * t170);
-        let t186 = 1.0
-            - (g1_vy_leg4 * t170 - minus_g1_vx_leg4 * t176 + g1_wz_leg4 * t168);
-        let t188 = 1.0 / ::overact::math::sqrt(t186);
+        let t164 = (g1_wz_leg4 - minus_g1_vx_leg4 * t145 - t148 * t117) / t163;
+        let t166 = t115 * t117 - t148 * t164;
+        let t172 = t145 * t164 - (minus_g1_vx_leg4 * t111 + t112 * t166);
+        let t182 = 1.0
+            - (g1_vy_leg4 * t166 - minus_g1_vx_leg4 * t172 + g1_wz_leg4 * t164);
+        let t184 = 1.0 / ::overact::math::sqrt(t182);
         Ok([
             [
-                -((g1_vy_leg1 * t170 - minus_g1_vx_leg1 * t176 + g1_wz_leg1 * t168)
-                    * t188),
+                -((g1_vy_leg1 * t166 - minus_g1_vx_leg1 * t172 + g1_wz_leg1 * t164)
+                    * t184),
             ],
             [
-                -((g1_wz_leg2 * t168
-                    - (minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t170)) * t188),
+                -((g1_wz_leg2 * t164
+                    - (minus_g1_vx_leg2 * t172 + minus_g1_vy_leg2 * t166)) * t184),
             ],
             [
-                -((g1_wz_leg3 * t168
-                    - (minus_g1_vx_leg3 * t176 + minus_g1_vy_leg3 * t170)) * t188),
+                -((g1_wz_leg3 * t164
+                    - (minus_g1_vx_leg3 * t172 + minus_g1_vy_leg3 * t166)) * t184),
             ],
-            [t186 * t188],
+            [t182 * t184],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.

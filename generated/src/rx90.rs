@@ -365,7 +365,7 @@ impl Rx90 {
     /// Output: 6 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 671 operations (289 additions, 382 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 545 intermediates.
+    /// 640 operations (278 additions, 362 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 514 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 6],
@@ -376,299 +376,302 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_accelerations[0];
-        let t4 = c2_arm * joint_velocities[0];
-        let t5 = joint_velocities[1] * t4;
-        let t6 = t3 + t5;
-        let t8 = s2_arm * joint_velocities[0];
-        let t9 = joint_velocities[1] * t8;
-        let t12 = t8 * t4;
-        let t15 = c2_arm * joint_accelerations[0];
-        let t16 = t15 - t9;
-        let t17 = t9 - t16;
-        let t20 = t8 * t8;
-        let t21 = t4 * t4;
-        let t23 = t12 + joint_accelerations[1];
-        let t25 = joint_velocities[1] * joint_velocities[1];
-        let t28 = s2_arm * t23 + c2_arm * (t25 - t20);
-        let t29 = c2_arm * t17;
-        let t35 = 9.81 * c2_arm;
-        let t36 = 9.81 * s2_arm;
+        let t3 = s2_arm * joint_velocities[0];
+        let t4 = joint_velocities[1] * t3;
+        let t5 = c2_arm * joint_accelerations[0];
+        let t6 = t5 - t4;
+        let t7 = t4 - t6;
+        let t8 = c2_arm * t7;
+        let t10 = c2_arm * joint_velocities[0];
+        let t11 = t3 * t10;
+        let t12 = joint_velocities[1] * t10;
+        let t13 = s2_arm * joint_accelerations[0];
+        let t14 = t13 + t12;
+        let t19 = t3 * t3;
+        let t20 = t10 * t10;
+        let t22 = t11 + joint_accelerations[1];
+        let t24 = joint_velocities[1] * joint_velocities[1];
+        let t27 = s2_arm * t22 + c2_arm * (t24 - t19);
+        let t33 = 9.81 * c2_arm;
+        let t34 = 9.81 * s2_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t51 = c3_arm * t4 - s3_arm * t8;
-        let t53 = c3_arm * t6 + s3_arm * t16 + joint_velocities[2] * t51;
-        let t57 = c3_arm * t8 + s3_arm * t4;
-        let t58 = joint_velocities[1] + joint_velocities[2];
-        let t59 = t57 * t58;
-        let t61 = s23_arm * t53 + c23_arm * t59;
-        let t62 = t57 * t51;
-        let t63 = t51 * t58;
-        let t64 = t63 + t53;
-        let t70 = c3_arm * t16 - s3_arm * t6 - joint_velocities[2] * t57;
-        let t71 = t59 - t70;
-        let t74 = t57 * t57;
-        let t75 = t51 * t51;
-        let t76 = t74 - t75;
-        let t77 = joint_accelerations[1] + joint_accelerations[2];
-        let t78 = t62 + t77;
-        let t80 = t58 * t58;
-        let t84 = t63 - t53;
-        let t88 = t62 - t77;
-        let t91 = t59 + t70;
-        let t92 = 0.45 * c2_arm;
-        let t94 = 0.45 * t17;
-        let t97 = 0.45 * c3_arm;
-        let t99 = 0.45 * s3_arm;
-        let t104 = t35 + 0.45 * t23;
-        let t108 = t36 - 0.45 * (t21 + t25);
-        let t110 = c3_arm * t104 - s3_arm * t108;
-        let t114 = s23_arm * t94 - t92 * t64;
-        let t116 = t74 + t80;
-        let t121 = c3_arm * t108 + s3_arm * t104;
-        let t122 = t99 * t88 - t97 * t116 - t121;
-        let t130 = s23_arm * c4_arm;
-        let t136 = s4_arm * t57 + c4_arm * t58;
-        let t138 = c4_arm * t53 - s4_arm * t77 - joint_velocities[3] * t136;
-        let t140 = s23_arm * s4_arm;
-        let t143 = c4_arm * t57 - s4_arm * t58;
-        let t144 = t51 + joint_velocities[3];
-        let t145 = t143 * t144;
-        let t146 = t140 * t145;
-        let t148 = t143 * t136;
-        let t150 = t130 * t138 - t146 + c23_arm * t148;
-        let t152 = c4_arm * t145;
-        let t153 = s4_arm * t138 + t152;
-        let t154 = t143 * t143;
-        let t155 = t136 * t136;
-        let t156 = t154 - t155;
-        let t162 = s4_arm * t53 + c4_arm * t77 + joint_velocities[3] * t143;
-        let t163 = t145 + t162;
-        let t165 = t136 * t144;
-        let t166 = t138 - t165;
-        let t172 = s4_arm * t163 - c4_arm * t166;
-        let t173 = t70 + joint_accelerations[3];
-        let t174 = t173 - t148;
-        let t176 = t144 * t144;
-        let t177 = t176 - t154;
-        let t180 = t165 + t138;
-        let t183 = s4_arm * t174;
-        let t185 = t183 + c4_arm * t177;
-        let t187 = t153 - t88;
-        let t188 = t155 - t176;
-        let t190 = t148 + t173;
-        let t193 = t145 - t162;
-        let t197 = c4_arm * t190;
-        let t198 = s4_arm * t188 + t197;
-        let t202 = t146 - t130 * t165 + c23_arm * t173;
-        let t204 = s4_arm * t165 + t152;
-        let t206 = 0.45 * (s23_arm - c2_arm);
-        let t207 = s4_arm * t206;
-        let t208 = t155 + t176;
-        let t210 = c4_arm * t206;
-        let t214 = t110 - 0.45 * t116;
-        let t217 = t121 + 0.45 * t88;
-        let t220 = 0.45 * (t17 + t64);
-        let t222 = s4_arm * t217 + c4_arm * t220;
-        let t227 = t99 - 0.45;
-        let t228 = c4_arm * t227;
-        let t230 = s4_arm * t227;
-        let t234 = c4_arm * t214;
-        let t236 = 0.45 * c4_arm;
-        let t242 = t154 + t176;
-        let t248 = c4_arm * t217 - s4_arm * t220;
-        let t251 = t207 * t190 + t210 * t242 + t130 * t214 - c23_arm * t248;
-        let t257 = s4_arm * t214;
-        let t258 = t230 * t242 - t228 * t190 + t97 * t166 - t257;
-        let t260 = 0.45 * s4_arm;
-        let t263 = 0.45 * t197 - t260 * t242 - t257;
-        let t275 = t222 * t210 - t248 * t207;
-        let t280 = t248 * t228 + t222 * t230 + t97 * t214;
-        let t281 = 0.45 * t217;
-        let t287 = t130 * c5_arm + c23_arm * s5_arm;
-        let t293 = c5_arm * t144 - s5_arm * t143;
-        let t295 = c5_arm * t138 + s5_arm * t173 + joint_velocities[4] * t293;
-        let t299 = c23_arm * c5_arm - t130 * s5_arm;
-        let t302 = c5_arm * t143 + s5_arm * t144;
-        let t303 = t136 + joint_velocities[4];
-        let t304 = t302 * t303;
-        let t305 = t299 * t304;
-        let t307 = t302 * t293;
-        let t309 = t287 * t295 + t305 - t140 * t307;
-        let t310 = s4_arm * s5_arm;
-        let t311 = t310 * t304;
-        let t312 = s4_arm * c5_arm;
-        let t316 = t311 - t295 * t312 - c4_arm * t307;
-        let t318 = c5_arm * t304;
-        let t319 = s5_arm * t295 + t318;
-        let t320 = t293 * t303;
-        let t321 = t320 + t295;
-        let t327 = c5_arm * t173 - s5_arm * t138 - joint_velocities[4] * t302;
-        let t328 = t304 - t327;
-        let t331 = t302 * t302;
-        let t332 = t293 * t293;
-        let t333 = t331 - t332;
-        let t340 = t312 * t328 + t310 * t321 + c4_arm * t333;
-        let t344 = t162 + joint_accelerations[4];
-        let t345 = t307 + t344;
-        let t347 = t303 * t303;
-        let t348 = t347 - t331;
-        let t351 = t320 - t295;
-        let t358 = t310 * t348 - t312 * t345 - c4_arm * t351;
-        let t365 = t204 - t153 - t316;
-        let t367 = t332 - t347;
-        let t369 = t307 - t344;
-        let t372 = t304 + t327;
-        let t379 = c4_arm * t372 - (t312 * t367 + t310 * t369);
-        let t386 = t287 * t320 - t305 + t140 * t344;
-        let t390 = c4_arm * t344 - (t312 * t320 + t311);
-        let t392 = s5_arm * t320 - t318;
-        let t393 = c5_arm * t207;
-        let t394 = t332 + t347;
-        let t396 = s5_arm * t207;
-        let t403 = c5_arm * t214 - s5_arm * t248;
-        let t410 = c5_arm * t97 - s5_arm * t228;
-        let t414 = c5_arm * t228 + s5_arm * t97;
-        let t421 = c4_arm * t403 - t222 * t310;
-        let t423 = c5_arm * t236;
-        let t425 = s5_arm * t236;
-        let t434 = t331 + t347;
-        let t441 = c5_arm * t248 + s5_arm * t214;
-        let t444 = t210 * t321 - (t393 * t369 + t396 * t434) + t287 * t222 - t140 * t441;
-        let t452 = t222 * t312 + c4_arm * t441;
-        let t453 = t414 * t369 - t410 * t434 + t230 * t321 - t452;
-        let t459 = t423 * t369 + t425 * t434 + t260 * t321 + t452;
-        let t460 = s5_arm * t222;
-        let t466 = t287 * c6_arm - t140 * s6_arm;
-        let t472 = s6_arm * t302 + c6_arm * t303;
-        let t474 = c6_arm * t295 - s6_arm * t344 - joint_velocities[5] * t472;
-        let t478 = t287 * s6_arm + t140 * c6_arm;
-        let t481 = c6_arm * t302 - s6_arm * t303;
-        let t482 = t293 + joint_velocities[5];
-        let t483 = t481 * t482;
-        let t484 = t478 * t483;
-        let t486 = t481 * t472;
-        let t488 = t466 * t474 - t484 + t299 * t486;
-        let t491 = s6_arm * t312 - c4_arm * c6_arm;
-        let t492 = t491 * t483;
-        let t495 = c6_arm * t312 + c4_arm * s6_arm;
-        let t499 = t492 - t474 * t495 + t310 * t486;
-        let t500 = s5_arm * c6_arm;
-        let t502 = s5_arm * s6_arm;
-        let t503 = t502 * t483;
-        let t506 = t474 * t500 - t503 + c5_arm * t486;
-        let t508 = c6_arm * t483;
-        let t509 = s6_arm * t474 + t508;
-        let t510 = t481 * t481;
-        let t511 = t472 * t472;
-        let t512 = t510 - t511;
-        let t518 = s6_arm * t295 + c6_arm * t344 + joint_velocities[5] * t481;
-        let t519 = t483 + t518;
-        let t521 = t472 * t482;
-        let t522 = t474 - t521;
-        let t530 = t495 * t519 + t491 * t522 + t310 * t512;
-        let t539 = t327 + joint_accelerations[5];
-        let t540 = t539 - t486;
-        let t542 = t482 * t482;
-        let t543 = t542 - t510;
-        let t546 = t521 + t474;
-        let t553 = t491 * t543 - t495 * t540 + t310 * t546;
-        let t565 = t316 + t390 - t499;
-        let t569 = t511 - t542;
-        let t571 = t486 + t539;
-        let t574 = t483 - t518;
-        let t581 = t491 * t571 - t495 * t569 + t310 * t574;
-        let t597 = t495 * t521 - t492 + t310 * t539;
-        let t606 = c6_arm * t393 + s6_arm * t210;
-        let t607 = t511 + t542;
-        let t611 = s6_arm * t393 - c6_arm * t210;
-        let t619 = s6_arm * t441 + c6_arm * t222;
-        let t626 = c6_arm * t414 - s6_arm * t230;
-        let t630 = s6_arm * t414 + c6_arm * t230;
-        let t636 = t403 * t491 + t310 * t619;
-        let t640 = s6_arm * t423 + c6_arm * t260;
-        let t644 = s6_arm * t260 - c6_arm * t423;
-        let t655 = t510 + t542;
-        let t663 = c6_arm * t441 - s6_arm * t222;
-        let t674 = t403 * t495 + t310 * t663;
+        let t44 = joint_velocities[0] * c23_arm;
+        let t45 = joint_velocities[1] + joint_velocities[2];
+        let t46 = t44 * t45;
+        let t51 = c3_arm * t14 + s3_arm * t6 + joint_velocities[2] * t44;
+        let t52 = t46 + t51;
+        let t53 = s23_arm * t52;
+        let t54 = joint_velocities[0] * s23_arm;
+        let t55 = t54 * t44;
+        let t57 = t54 * t45;
+        let t62 = c3_arm * t6 - s3_arm * t14 - joint_velocities[2] * t54;
+        let t63 = t57 - t62;
+        let t66 = t54 * t54;
+        let t67 = t44 * t44;
+        let t68 = t66 - t67;
+        let t69 = joint_accelerations[1] + joint_accelerations[2];
+        let t70 = t55 + t69;
+        let t72 = t45 * t45;
+        let t76 = t46 - t51;
+        let t80 = t55 - t69;
+        let t83 = t57 + t62;
+        let t84 = 0.45 * c2_arm;
+        let t86 = 0.45 * t7;
+        let t89 = 0.45 * c3_arm;
+        let t91 = 0.45 * s3_arm;
+        let t96 = t33 + 0.45 * t22;
+        let t100 = t34 - 0.45 * (t20 + t24);
+        let t102 = c3_arm * t96 - s3_arm * t100;
+        let t106 = s23_arm * t86 - t84 * t52;
+        let t108 = t66 + t72;
+        let t110 = t91 * t80 - t89 * t108;
+        let t113 = c3_arm * t100 + s3_arm * t96;
+        let t122 = s23_arm * c4_arm;
+        let t128 = s4_arm * t54 + c4_arm * t45;
+        let t130 = c4_arm * t51 - s4_arm * t69 - joint_velocities[3] * t128;
+        let t132 = s23_arm * s4_arm;
+        let t135 = c4_arm * t54 - s4_arm * t45;
+        let t136 = t44 + joint_velocities[3];
+        let t137 = t135 * t136;
+        let t138 = t132 * t137;
+        let t140 = t135 * t128;
+        let t142 = t122 * t130 - t138 + c23_arm * t140;
+        let t145 = s4_arm * t130 + c4_arm * t137;
+        let t146 = t135 * t135;
+        let t147 = t128 * t128;
+        let t148 = t146 - t147;
+        let t150 = t145 - t80;
+        let t158 = s4_arm * t51 + c4_arm * t69 + joint_velocities[3] * t135;
+        let t159 = t137 + t158;
+        let t161 = t128 * t136;
+        let t162 = t130 - t161;
+        let t164 = s4_arm * t159 - c4_arm * t162;
+        let t165 = t62 + joint_accelerations[3];
+        let t166 = t165 - t140;
+        let t168 = t136 * t136;
+        let t169 = t168 - t146;
+        let t172 = t161 + t130;
+        let t175 = s4_arm * t166;
+        let t177 = t175 + c4_arm * t169;
+        let t179 = t147 - t168;
+        let t181 = t140 + t165;
+        let t184 = t137 - t158;
+        let t188 = c4_arm * t181;
+        let t189 = s4_arm * t179 + t188;
+        let t193 = t138 - t122 * t161 + c23_arm * t165;
+        let t194 = t54 * t136;
+        let t196 = 0.45 * (s23_arm - c2_arm);
+        let t197 = s4_arm * t196;
+        let t198 = t147 + t168;
+        let t200 = c4_arm * t196;
+        let t204 = t102 - 0.45 * t108;
+        let t206 = 0.45 * t80;
+        let t207 = t113 + t206;
+        let t210 = 0.45 * (t7 + t52);
+        let t212 = s4_arm * t207 + c4_arm * t210;
+        let t217 = 0.45 * c4_arm;
+        let t220 = t217 * t198 + 0.45 * t175;
+        let t221 = 1.0 - s3_arm;
+        let t224 = c4_arm * t204;
+        let t228 = t146 + t168;
+        let t234 = c4_arm * t207 - s4_arm * t210;
+        let t237 = t197 * t181 + t200 * t228 + t122 * t204 - c23_arm * t234;
+        let t239 = 0.45 * s4_arm;
+        let t241 = 0.45 * t188 - t239 * t228;
+        let t245 = s4_arm * t204;
+        let t246 = t241 * t221 + t89 * t162 - t245;
+        let t247 = t241 - t245;
+        let t250 = t206 + t207;
+        let t252 = t196 * t210;
+        let t253 = t91 - 0.45;
+        let t256 = t207 * t253 + t89 * t204;
+        let t257 = 0.45 * t207;
+        let t263 = t122 * c5_arm + c23_arm * s5_arm;
+        let t269 = c5_arm * t136 - s5_arm * t135;
+        let t271 = c5_arm * t130 + s5_arm * t165 + joint_velocities[4] * t269;
+        let t275 = c23_arm * c5_arm - t122 * s5_arm;
+        let t278 = c5_arm * t135 + s5_arm * t136;
+        let t279 = t128 + joint_velocities[4];
+        let t280 = t278 * t279;
+        let t281 = t275 * t280;
+        let t283 = t278 * t269;
+        let t285 = t263 * t271 + t281 - t132 * t283;
+        let t286 = s4_arm * s5_arm;
+        let t287 = t286 * t280;
+        let t288 = s4_arm * c5_arm;
+        let t292 = t287 - t271 * t288 - c4_arm * t283;
+        let t295 = s5_arm * t271 + c5_arm * t280;
+        let t296 = t269 * t279;
+        let t297 = t296 + t271;
+        let t303 = c5_arm * t165 - s5_arm * t130 - joint_velocities[4] * t278;
+        let t304 = t280 - t303;
+        let t307 = t278 * t278;
+        let t308 = t269 * t269;
+        let t309 = t307 - t308;
+        let t312 = t181 - t295;
+        let t316 = s4_arm * (t295 - t312) + c4_arm * t309;
+        let t320 = t158 + joint_accelerations[4];
+        let t321 = t283 + t320;
+        let t323 = t279 * t279;
+        let t324 = t323 - t307;
+        let t327 = t296 - t271;
+        let t334 = t286 * t324 - t288 * t321 - c4_arm * t327;
+        let t341 = t194 - t145 - t292;
+        let t342 = t308 - t323;
+        let t344 = t283 - t320;
+        let t347 = t280 + t303;
+        let t354 = c4_arm * t347 - (t288 * t342 + t286 * t344);
+        let t361 = t263 * t296 - t281 + t132 * t320;
+        let t365 = c4_arm * t320 - (t288 * t296 + t287);
+        let t366 = t135 * t279;
+        let t367 = c5_arm * t197;
+        let t368 = t308 + t323;
+        let t370 = s5_arm * t197;
+        let t377 = c5_arm * t204 - s5_arm * t234;
+        let t383 = c4_arm * t253;
+        let t385 = c5_arm * t89 - s5_arm * t383;
+        let t389 = c5_arm * t383 + s5_arm * t89;
+        let t392 = s4_arm * t253;
+        let t397 = c4_arm * t377 - t212 * t286;
+        let t399 = c5_arm * t217;
+        let t401 = s5_arm * t217;
+        let t410 = t307 + t323;
+        let t417 = c5_arm * t234 + s5_arm * t204;
+        let t420 = t200 * t297 - (t367 * t344 + t370 * t410) + t263 * t212 - t132 * t417;
+        let t428 = t212 * t288 + c4_arm * t417;
+        let t429 = t389 * t344 - t385 * t410 + t392 * t297 - t428;
+        let t435 = t399 * t344 + t401 * t410 + t239 * t297 + t428;
+        let t436 = s5_arm * t212;
+        let t442 = t263 * c6_arm - t132 * s6_arm;
+        let t448 = s6_arm * t278 + c6_arm * t279;
+        let t450 = c6_arm * t271 - s6_arm * t320 - joint_velocities[5] * t448;
+        let t454 = t263 * s6_arm + t132 * c6_arm;
+        let t457 = c6_arm * t278 - s6_arm * t279;
+        let t458 = t269 + joint_velocities[5];
+        let t459 = t457 * t458;
+        let t460 = t454 * t459;
+        let t462 = t457 * t448;
+        let t464 = t442 * t450 - t460 + t275 * t462;
+        let t467 = s6_arm * t288 - c4_arm * c6_arm;
+        let t468 = t467 * t459;
+        let t471 = c6_arm * t288 + c4_arm * s6_arm;
+        let t475 = t468 - t450 * t471 + t286 * t462;
+        let t476 = s5_arm * c6_arm;
+        let t478 = s5_arm * s6_arm;
+        let t479 = t478 * t459;
+        let t482 = t450 * t476 - t479 + c5_arm * t462;
+        let t483 = t278 * t458;
+        let t484 = t448 * t458;
+        let t485 = t450 - t484;
+        let t487 = t483 + s6_arm * t485;
+        let t488 = t457 * t457;
+        let t489 = t448 * t448;
+        let t490 = t488 - t489;
+        let t496 = s6_arm * t271 + c6_arm * t320 + joint_velocities[5] * t457;
+        let t497 = t459 + t496;
+        let t506 = t471 * t497 + t467 * t485 + t286 * t490;
+        let t508 = t487 - t344;
+        let t515 = t303 + joint_accelerations[5];
+        let t516 = t515 - t462;
+        let t518 = t458 * t458;
+        let t519 = t518 - t488;
+        let t522 = t484 + t450;
+        let t529 = t467 * t519 - t471 * t516 + t286 * t522;
+        let t541 = t292 + t365 - t475;
+        let t544 = t489 - t518;
+        let t546 = t462 + t515;
+        let t549 = t459 - t496;
+        let t556 = t467 * t546 - t471 * t544 + t286 * t549;
+        let t572 = t471 * t484 - t468 + t286 * t515;
+        let t577 = t196 * t471;
+        let t578 = t489 + t518;
+        let t580 = t196 * t467;
+        let t588 = s6_arm * t417 + c6_arm * t212;
+        let t595 = c6_arm * t389 - s6_arm * t392;
+        let t599 = s6_arm * t389 + c6_arm * t392;
+        let t605 = t377 * t467 + t286 * t588;
+        let t609 = s6_arm * t399 + c6_arm * t239;
+        let t613 = s6_arm * t239 - c6_arm * t399;
+        let t624 = t488 + t518;
+        let t632 = c6_arm * t417 - s6_arm * t212;
+        let t643 = t377 * t471 + t286 * t632;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t6 + c2_arm * t9,
-                c2_arm * (t5 + t6) - s2_arm * t17, t28, -t29,
-                s2_arm * (t21 - t25) - c2_arm * (t12 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t61, c23_arm * t64 - s23_arm * t71,
-                s23_arm * t78 + c23_arm * (t80 - t74), joint_accelerations[0] - t61,
-                s23_arm * (t75 - t80) - c23_arm * t88, 0.0, -(t92 * t71 + c23_arm * t94), t114,
-                -(0.45 * t28), -(0.2025 * t29), 0.0, 0.0, 0.0, 0.0, t150,
-                c23_arm * t156 - (t130 * t163 + t140 * t166),
-                t130 * t174 - t140 * t177 + c23_arm * t180, t61 - t150,
-                t130 * t188 - t140 * t190 + c23_arm * t193, t202,
-                t207 * t208 - t210 * t174 + t140 * t214 - c23_arm * t222, t251,
-                0.9 * (t61 + 1.1111111111111112 * t114), t275, 0.0, 0.0, 0.0, 0.0, t309,
-                t299 * t321 - t287 * t328 + t140 * t333, t287 * t345 + t299 * t348 - t140 * t351,
-                t150 + t202 - t309, t287 * t367 - t299 * t369 + t140 * t372, t386,
-                t393 * t394 + t396 * t345 + t210 * t328 + t140 * t403 - t299 * t222, t444, -t251,
-                t275, 0.0, 0.0, 0.0, 0.0, t488, t299 * t512 - (t466 * t519 + t478 * t522),
-                t466 * t540 - t478 * t543 + t299 * t546, t309 + t386 - t488,
-                t466 * t569 - t478 * t571 + t299 * t574, t484 - t466 * t521 + t299 * t539,
-                t606 * t607 + t611 * t540 + t396 * t519 + t478 * t403 - t299 * t619,
-                t606 * t571 - t611 * t655 + t396 * t522 + t466 * t403 - t299 * t663, t444, t275,
+                ::overact::math::sign(joint_velocities[0]), 1.0, joint_accelerations[0] + t8,
+                c2_arm * (t12 + t14) - s2_arm * t7, t27, -t8,
+                s2_arm * (t20 - t24) - c2_arm * (t11 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, t53, c23_arm * t52 - s23_arm * t63,
+                s23_arm * t70 + c23_arm * (t72 - t66), joint_accelerations[0] - t53,
+                s23_arm * (t67 - t72) - c23_arm * t80, 0.0, -(t84 * t63 + c23_arm * t86), t106,
+                -(0.45 * t27), -(0.2025 * t8), 0.0, 0.0, 0.0, 0.0, t142,
+                c23_arm * t148 - s23_arm * (t145 + t150),
+                t122 * t166 - t132 * t169 + c23_arm * t172, t53 - t142,
+                t122 * t179 - t132 * t181 + c23_arm * t184, t193,
+                t197 * t198 - t200 * t166 + t132 * t204 - c23_arm * t212, t237, t106 + t53 * 0.9,
+                t252, 0.0, 0.0, 0.0, 0.0, t285, t275 * t297 - t263 * t304 + t132 * t309,
+                t263 * t321 + t275 * t324 - t132 * t327, t142 + t193 - t285,
+                t263 * t342 - t275 * t344 + t132 * t347, t361,
+                t367 * t368 + t370 * t321 + t200 * t304 + t132 * t377 - t275 * t212, t420, -t237,
+                t252, 0.0, 0.0, 0.0, 0.0, t464, t275 * t490 - (t442 * t497 + t454 * t485),
+                t442 * t516 - t454 * t519 + t275 * t522, t285 + t361 - t464,
+                t442 * t544 - t454 * t546 + t275 * t549, t460 - t442 * t484 + t275 * t515,
+                t577 * t578 + t580 * t516 + t370 * t497 + t454 * t377 - t275 * t588,
+                t577 * t546 - t580 * t624 + t370 * t485 + t442 * t377 - t275 * t632, t420, t252,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t12, t20 - t21, t3, t12, t15, joint_accelerations[1], t35,
-                -t36, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t62, t76, -t84, t62, t91, t77,
-                t97 * t78 - t99 * (t75 + t80) + t110, t122, -(0.45 * t3), 0.45 * t104, 0.0, 0.0,
-                0.0, 0.0, -t153, t172, -t185, t187, -t198, t204,
-                t97 * t163 - (t228 * t208 + t230 * t174) + t234, t258,
-                0.9 * (1.1111111111111112 * t122 - t88), t280, 0.0, 0.0, 0.0, 0.0, t316, t340, t358,
-                t365, t379, t390, t410 * t345 - t414 * t394 + t230 * t328 + t421, t453, -t258, t280,
-                0.0, 0.0, 0.0, 0.0, t499, t530, t553, t565, t581, t597,
-                t410 * t519 - (t626 * t607 + t630 * t540) - t636,
-                t630 * t655 - t626 * t571 + t410 * t522 - t674, t453, t280, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
+                -t34, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t55, t68, -t76, t55, t83, t69,
+                t89 * t70 - t91 * (t67 + t72) + t102, t110 - t113, -(0.45 * t13), 0.45 * t96, 0.0,
+                0.0, 0.0, 0.0, -t145, t164, -t177, t150, -t189, t194,
+                t89 * t159 + t220 * t221 + t224, t246, t110 - t250, t256, 0.0, 0.0, 0.0, 0.0, t292,
+                t316, t334, t341, t354, t365, t385 * t321 - t389 * t368 + t392 * t304 + t397, t429,
+                -t246, t256, 0.0, 0.0, 0.0, 0.0, t475, t506, t529, t541, t556, t572,
+                t385 * t497 - (t595 * t578 + t599 * t516) - t605,
+                t599 * t624 - t595 * t546 + t385 * t485 - t643, t429, t256, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t62, t76, -t84, t62, t91, t77, t110, -t121, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t153, t172,
-                -t185, t187, -t198, t204, t236 * t208 + 0.45 * t183 + t234, t263,
-                -(0.9 * (t88 + 1.1111111111111112 * t121)), -t281, 0.0, 0.0, 0.0, 0.0, t316, t340,
-                t358, t365, t379, t390, t423 * t394 + t425 * t345 - t260 * t328 + t421, -t459,
-                -t263, -t281, 0.0, 0.0, 0.0, 0.0, t499, t530, t553, t565, t581, t597,
-                t640 * t540 - t644 * t607 + t425 * t519 - t636,
-                t425 * t522 - (t644 * t571 + t640 * t655) - t674, -t459, -t281, 0.0, 0.0, 0.0, 0.0,
+                -t55, t68, -t76, t55, t83, t69, t102, -t113, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t145, t164,
+                -t177, t150, -t189, t194, t220 + t224, t247, -t250, -t257, 0.0, 0.0, 0.0, 0.0, t292,
+                t316, t334, t341, t354, t365, t399 * t368 + t401 * t321 - t239 * t304 + t397, -t435,
+                -t247, -t257, 0.0, 0.0, 0.0, 0.0, t475, t506, t529, t541, t556, t572,
+                t609 * t516 - t613 * t578 + t401 * t497 - t605,
+                t401 * t485 - (t613 * t546 + t609 * t624) - t643, -t435, -t257, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t148, t156,
-                t180, -t148, t193, t173, -t222, -t248, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t319,
-                c5_arm * t321 - s5_arm * t328, s5_arm * t345 + c5_arm * t348, t190 - t319,
-                s5_arm * t367 - c5_arm * t369, t392, -(c5_arm * t222), t460, t248, 0.0, 0.0, 0.0,
-                0.0, 0.0, t506, c5_arm * t512 - (t500 * t519 + t502 * t522),
-                t500 * t540 - t502 * t543 + c5_arm * t546, t319 + t392 - t506,
-                t500 * t569 - t502 * t571 + c5_arm * t574, t503 - t500 * t521 + c5_arm * t539,
-                t403 * t502 - c5_arm * t619, t403 * t500 - c5_arm * t663, t460, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t140, t148,
+                t172, -t140, t184, t165, -t212, -t234, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t295,
+                c5_arm * t297 - s5_arm * t304, s5_arm * t321 + c5_arm * t324, t312,
+                s5_arm * t342 - c5_arm * t344, -t366, -(c5_arm * t212), t436, t234, 0.0, 0.0, 0.0,
+                0.0, 0.0, t482, c5_arm * t490 - s5_arm * (t487 + t508),
+                t476 * t516 - t478 * t519 + c5_arm * t522, t295 - t366 - t482,
+                t476 * t544 - t478 * t546 + c5_arm * t549, t479 - t476 * t484 + c5_arm * t515,
+                t377 * t478 - c5_arm * t588, t377 * t476 - c5_arm * t632, t436, 0.0, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t307, t333, -t351, t307,
-                t372, t344, t403, -t441, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, -t509,
-                s6_arm * t519 - c6_arm * t522, -(s6_arm * t540 + c6_arm * t543), t509 - t369,
-                -(s6_arm * t569 + c6_arm * t571), s6_arm * t521 + t508, c6_arm * t403,
-                -(s6_arm * t403), -t441, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t283, t309, -t327, t283,
+                t347, t320, t377, -t417, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, -t487,
+                s6_arm * t497 - c6_arm * t485, -(s6_arm * t516 + c6_arm * t519), t508,
+                -(s6_arm * t544 + c6_arm * t546), t483, c6_arm * t377, -(s6_arm * t377), -t417, 0.0,
+                0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t486, t512, t546, -t486, t574, t539, -t619,
-                -t663, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t462, t490, t522, -t462, t549, t515, -t588,
+                -t632, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -683,7 +686,7 @@ impl Rx90 {
     /// Output: 6 x 58.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 633 operations (268 additions, 365 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 528 intermediates.
+    /// 612 operations (258 additions, 354 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 507 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 6],
@@ -694,269 +697,271 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_accelerations[0];
-        let t4 = c2_arm * joint_velocities[0];
-        let t5 = joint_velocities[1] * t4;
-        let t6 = t3 + t5;
-        let t8 = s2_arm * joint_velocities[0];
-        let t9 = joint_velocities[1] * t8;
-        let t12 = t8 * t4;
-        let t15 = c2_arm * joint_accelerations[0];
-        let t16 = t15 - t9;
-        let t17 = t9 - t16;
-        let t20 = t8 * t8;
-        let t21 = t4 * t4;
-        let t23 = t12 + joint_accelerations[1];
-        let t25 = joint_velocities[1] * joint_velocities[1];
-        let t34 = 9.81 * c2_arm;
-        let t35 = 9.81 * s2_arm;
+        let t3 = c2_arm * joint_velocities[0];
+        let t4 = joint_velocities[1] * t3;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t6 = t5 + t4;
+        let t7 = t4 + t6;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t14 = t13 - t12;
+        let t15 = t12 - t14;
+        let t18 = t9 * t9;
+        let t19 = t3 * t3;
+        let t21 = t10 + joint_accelerations[1];
+        let t23 = joint_velocities[1] * joint_velocities[1];
+        let t32 = 9.81 * c2_arm;
+        let t33 = 9.81 * s2_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t50 = c3_arm * t4 - s3_arm * t8;
-        let t52 = c3_arm * t6 + s3_arm * t16 + joint_velocities[2] * t50;
-        let t56 = c3_arm * t8 + s3_arm * t4;
-        let t57 = joint_velocities[1] + joint_velocities[2];
-        let t58 = t56 * t57;
-        let t61 = t56 * t50;
-        let t62 = t50 * t57;
-        let t63 = t62 + t52;
-        let t69 = c3_arm * t16 - s3_arm * t6 - joint_velocities[2] * t56;
-        let t70 = t58 - t69;
-        let t73 = t56 * t56;
-        let t74 = t50 * t50;
-        let t75 = t73 - t74;
-        let t76 = joint_accelerations[1] + joint_accelerations[2];
-        let t77 = t61 + t76;
-        let t79 = t57 * t57;
-        let t83 = t62 - t52;
-        let t86 = t61 - t76;
-        let t89 = t58 + t69;
-        let t90 = 0.45 * c2_arm;
-        let t92 = 0.45 * t17;
-        let t95 = 0.45 * c3_arm;
-        let t97 = 0.45 * s3_arm;
-        let t102 = t34 + 0.45 * t23;
-        let t106 = t35 - 0.45 * (t21 + t25);
-        let t108 = c3_arm * t102 - s3_arm * t106;
-        let t114 = t73 + t79;
-        let t119 = c3_arm * t106 + s3_arm * t102;
-        let t124 = s23_arm * c4_arm;
-        let t130 = s4_arm * t56 + c4_arm * t57;
-        let t132 = c4_arm * t52 - s4_arm * t76 - joint_velocities[3] * t130;
-        let t134 = s23_arm * s4_arm;
-        let t137 = c4_arm * t56 - s4_arm * t57;
-        let t138 = t50 + joint_velocities[3];
-        let t139 = t137 * t138;
-        let t140 = t134 * t139;
-        let t142 = t137 * t130;
-        let t146 = c4_arm * t139;
-        let t147 = s4_arm * t132 + t146;
-        let t148 = t137 * t137;
-        let t149 = t130 * t130;
-        let t150 = t148 - t149;
-        let t156 = s4_arm * t52 + c4_arm * t76 + joint_velocities[3] * t137;
-        let t157 = t139 + t156;
-        let t159 = t130 * t138;
-        let t160 = t132 - t159;
-        let t166 = s4_arm * t157 - c4_arm * t160;
-        let t167 = t69 + joint_accelerations[3];
-        let t168 = t167 - t142;
-        let t170 = t138 * t138;
-        let t171 = t170 - t148;
-        let t174 = t159 + t132;
-        let t177 = s4_arm * t168;
-        let t179 = t177 + c4_arm * t171;
-        let t180 = t149 - t170;
-        let t182 = t142 + t167;
-        let t185 = t139 - t156;
-        let t189 = c4_arm * t182;
-        let t190 = s4_arm * t180 + t189;
-        let t196 = s4_arm * t159 + t146;
-        let t198 = 0.45 * (s23_arm - c2_arm);
-        let t199 = s4_arm * t198;
-        let t200 = t149 + t170;
-        let t202 = c4_arm * t198;
-        let t206 = t108 - 0.45 * t114;
-        let t209 = t119 + 0.45 * t86;
-        let t212 = 0.45 * (t17 + t63);
-        let t214 = s4_arm * t209 + c4_arm * t212;
-        let t219 = t97 - 0.45;
-        let t220 = c4_arm * t219;
-        let t222 = s4_arm * t219;
-        let t226 = c4_arm * t206;
-        let t228 = 0.45 * c4_arm;
-        let t234 = t148 + t170;
-        let t240 = c4_arm * t209 - s4_arm * t212;
-        let t249 = s4_arm * t206;
-        let t252 = 0.45 * s4_arm;
-        let t261 = t124 * c5_arm + c23_arm * s5_arm;
-        let t267 = c5_arm * t138 - s5_arm * t137;
-        let t269 = c5_arm * t132 + s5_arm * t167 + joint_velocities[4] * t267;
-        let t273 = c23_arm * c5_arm - t124 * s5_arm;
-        let t276 = c5_arm * t137 + s5_arm * t138;
-        let t277 = t130 + joint_velocities[4];
-        let t278 = t276 * t277;
-        let t279 = t273 * t278;
-        let t281 = t276 * t267;
-        let t284 = s4_arm * s5_arm;
-        let t285 = t284 * t278;
-        let t286 = s4_arm * c5_arm;
-        let t290 = t285 - t269 * t286 - c4_arm * t281;
-        let t292 = c5_arm * t278;
-        let t294 = t267 * t277;
-        let t295 = t294 + t269;
-        let t301 = c5_arm * t167 - s5_arm * t132 - joint_velocities[4] * t276;
-        let t302 = t278 - t301;
-        let t305 = t276 * t276;
-        let t306 = t267 * t267;
-        let t307 = t305 - t306;
-        let t314 = t286 * t302 + t284 * t295 + c4_arm * t307;
-        let t318 = t156 + joint_accelerations[4];
-        let t319 = t281 + t318;
-        let t321 = t277 * t277;
-        let t322 = t321 - t305;
-        let t325 = t294 - t269;
-        let t332 = t284 * t322 - t286 * t319 - c4_arm * t325;
-        let t336 = t306 - t321;
-        let t338 = t281 - t318;
-        let t341 = t278 + t301;
-        let t348 = c4_arm * t341 - (t286 * t336 + t284 * t338);
-        let t359 = c4_arm * t318 - (t286 * t294 + t285);
-        let t362 = c5_arm * t199;
-        let t363 = t306 + t321;
-        let t365 = s5_arm * t199;
-        let t372 = c5_arm * t206 - s5_arm * t240;
-        let t379 = c5_arm * t95 - s5_arm * t220;
-        let t383 = c5_arm * t220 + s5_arm * t95;
-        let t390 = c4_arm * t372 - t214 * t284;
-        let t392 = c5_arm * t228;
-        let t394 = s5_arm * t228;
-        let t403 = t305 + t321;
-        let t410 = c5_arm * t240 + s5_arm * t206;
-        let t421 = t214 * t286 + c4_arm * t410;
-        let t435 = t261 * c6_arm - t134 * s6_arm;
-        let t441 = s6_arm * t276 + c6_arm * t277;
-        let t443 = c6_arm * t269 - s6_arm * t318 - joint_velocities[5] * t441;
-        let t447 = t261 * s6_arm + t134 * c6_arm;
-        let t450 = c6_arm * t276 - s6_arm * t277;
-        let t451 = t267 + joint_velocities[5];
-        let t452 = t450 * t451;
-        let t453 = t447 * t452;
-        let t455 = t450 * t441;
-        let t460 = s6_arm * t286 - c4_arm * c6_arm;
-        let t461 = t460 * t452;
-        let t464 = c6_arm * t286 + c4_arm * s6_arm;
-        let t468 = t461 - t443 * t464 + t284 * t455;
-        let t469 = s5_arm * c6_arm;
-        let t471 = s5_arm * s6_arm;
-        let t472 = t471 * t452;
-        let t477 = c6_arm * t452;
-        let t479 = t450 * t450;
-        let t480 = t441 * t441;
-        let t481 = t479 - t480;
-        let t487 = s6_arm * t269 + c6_arm * t318 + joint_velocities[5] * t450;
-        let t488 = t452 + t487;
-        let t490 = t441 * t451;
-        let t491 = t443 - t490;
-        let t499 = t464 * t488 + t460 * t491 + t284 * t481;
-        let t508 = t301 + joint_accelerations[5];
-        let t509 = t508 - t455;
-        let t511 = t451 * t451;
-        let t512 = t511 - t479;
-        let t515 = t490 + t443;
-        let t522 = t460 * t512 - t464 * t509 + t284 * t515;
-        let t531 = t480 - t511;
-        let t533 = t455 + t508;
-        let t536 = t452 - t487;
-        let t543 = t460 * t533 - t464 * t531 + t284 * t536;
-        let t559 = t464 * t490 - t461 + t284 * t508;
-        let t568 = c6_arm * t362 + s6_arm * t202;
-        let t569 = t480 + t511;
-        let t573 = s6_arm * t362 - c6_arm * t202;
-        let t581 = s6_arm * t410 + c6_arm * t214;
-        let t588 = c6_arm * t383 - s6_arm * t222;
-        let t592 = s6_arm * t383 + c6_arm * t222;
-        let t598 = t372 * t460 + t284 * t581;
-        let t602 = s6_arm * t392 + c6_arm * t252;
-        let t606 = s6_arm * t252 - c6_arm * t392;
-        let t617 = t479 + t511;
-        let t625 = c6_arm * t410 - s6_arm * t214;
-        let t636 = t372 * t464 + t284 * t625;
+        let t43 = joint_velocities[0] * c23_arm;
+        let t44 = joint_velocities[1] + joint_velocities[2];
+        let t45 = t43 * t44;
+        let t50 = c3_arm * t6 + s3_arm * t14 + joint_velocities[2] * t43;
+        let t51 = t45 + t50;
+        let t53 = joint_velocities[0] * s23_arm;
+        let t54 = t53 * t43;
+        let t56 = t53 * t44;
+        let t61 = c3_arm * t14 - s3_arm * t6 - joint_velocities[2] * t53;
+        let t62 = t56 - t61;
+        let t65 = t53 * t53;
+        let t66 = t43 * t43;
+        let t67 = t65 - t66;
+        let t68 = joint_accelerations[1] + joint_accelerations[2];
+        let t69 = t54 + t68;
+        let t71 = t44 * t44;
+        let t75 = t45 - t50;
+        let t78 = t54 - t68;
+        let t81 = t56 + t61;
+        let t82 = 0.45 * c2_arm;
+        let t84 = 0.45 * t15;
+        let t87 = 0.45 * c3_arm;
+        let t89 = 0.45 * s3_arm;
+        let t94 = t32 + 0.45 * t21;
+        let t98 = t33 - 0.45 * (t19 + t23);
+        let t100 = c3_arm * t94 - s3_arm * t98;
+        let t106 = t65 + t71;
+        let t111 = c3_arm * t98 + s3_arm * t94;
+        let t116 = s23_arm * c4_arm;
+        let t122 = s4_arm * t53 + c4_arm * t44;
+        let t124 = c4_arm * t50 - s4_arm * t68 - joint_velocities[3] * t122;
+        let t126 = s23_arm * s4_arm;
+        let t129 = c4_arm * t53 - s4_arm * t44;
+        let t130 = t43 + joint_velocities[3];
+        let t131 = t129 * t130;
+        let t132 = t126 * t131;
+        let t134 = t129 * t122;
+        let t137 = t53 * t130;
+        let t138 = t122 * t130;
+        let t139 = t124 - t138;
+        let t141 = t137 + s4_arm * t139;
+        let t142 = t129 * t129;
+        let t143 = t122 * t122;
+        let t144 = t142 - t143;
+        let t150 = s4_arm * t50 + c4_arm * t68 + joint_velocities[3] * t129;
+        let t151 = t131 + t150;
+        let t158 = s4_arm * t151 - c4_arm * t139;
+        let t159 = t61 + joint_accelerations[3];
+        let t160 = t159 - t134;
+        let t162 = t130 * t130;
+        let t163 = t162 - t142;
+        let t166 = t138 + t124;
+        let t169 = s4_arm * t160;
+        let t171 = t169 + c4_arm * t163;
+        let t172 = t143 - t162;
+        let t174 = t134 + t159;
+        let t177 = t131 - t150;
+        let t181 = c4_arm * t174;
+        let t182 = s4_arm * t172 + t181;
+        let t188 = 0.45 * (s23_arm - c2_arm);
+        let t189 = s4_arm * t188;
+        let t190 = t143 + t162;
+        let t192 = c4_arm * t188;
+        let t196 = t100 - 0.45 * t106;
+        let t199 = t111 + 0.45 * t78;
+        let t202 = 0.45 * (t15 + t51);
+        let t204 = s4_arm * t199 + c4_arm * t202;
+        let t209 = 0.45 * c4_arm;
+        let t212 = t209 * t190 + 0.45 * t169;
+        let t213 = 1.0 - s3_arm;
+        let t216 = c4_arm * t196;
+        let t220 = t142 + t162;
+        let t226 = c4_arm * t199 - s4_arm * t202;
+        let t231 = 0.45 * s4_arm;
+        let t233 = 0.45 * t181 - t231 * t220;
+        let t237 = s4_arm * t196;
+        let t245 = t116 * c5_arm + c23_arm * s5_arm;
+        let t251 = c5_arm * t130 - s5_arm * t129;
+        let t253 = c5_arm * t124 + s5_arm * t159 + joint_velocities[4] * t251;
+        let t257 = c23_arm * c5_arm - t116 * s5_arm;
+        let t260 = c5_arm * t129 + s5_arm * t130;
+        let t261 = t122 + joint_velocities[4];
+        let t262 = t260 * t261;
+        let t263 = t257 * t262;
+        let t265 = t260 * t251;
+        let t268 = s4_arm * s5_arm;
+        let t269 = t268 * t262;
+        let t270 = s4_arm * c5_arm;
+        let t274 = t269 - t253 * t270 - c4_arm * t265;
+        let t275 = t129 * t261;
+        let t276 = t251 * t261;
+        let t277 = t276 + t253;
+        let t285 = c5_arm * t159 - s5_arm * t124 - joint_velocities[4] * t260;
+        let t286 = t262 - t285;
+        let t289 = t260 * t260;
+        let t290 = t251 * t251;
+        let t291 = t289 - t290;
+        let t298 = t270 * t286 + t268 * t277 + c4_arm * t291;
+        let t302 = t150 + joint_accelerations[4];
+        let t303 = t265 + t302;
+        let t305 = t261 * t261;
+        let t306 = t305 - t289;
+        let t309 = t276 - t253;
+        let t316 = t268 * t306 - t270 * t303 - c4_arm * t309;
+        let t320 = t290 - t305;
+        let t322 = t265 - t302;
+        let t325 = t262 + t285;
+        let t332 = c4_arm * t325 - (t270 * t320 + t268 * t322);
+        let t343 = c4_arm * t302 - (t270 * t276 + t269);
+        let t344 = c5_arm * t189;
+        let t345 = t290 + t305;
+        let t347 = s5_arm * t189;
+        let t354 = c5_arm * t196 - s5_arm * t226;
+        let t360 = t89 - 0.45;
+        let t361 = c4_arm * t360;
+        let t363 = c5_arm * t87 - s5_arm * t361;
+        let t367 = c5_arm * t361 + s5_arm * t87;
+        let t370 = s4_arm * t360;
+        let t375 = c4_arm * t354 - t204 * t268;
+        let t377 = c5_arm * t209;
+        let t379 = s5_arm * t209;
+        let t388 = t289 + t305;
+        let t395 = c5_arm * t226 + s5_arm * t196;
+        let t406 = t204 * t270 + c4_arm * t395;
+        let t420 = t245 * c6_arm - t126 * s6_arm;
+        let t426 = s6_arm * t260 + c6_arm * t261;
+        let t428 = c6_arm * t253 - s6_arm * t302 - joint_velocities[5] * t426;
+        let t432 = t245 * s6_arm + t126 * c6_arm;
+        let t435 = c6_arm * t260 - s6_arm * t261;
+        let t436 = t251 + joint_velocities[5];
+        let t437 = t435 * t436;
+        let t438 = t432 * t437;
+        let t440 = t435 * t426;
+        let t445 = s6_arm * t270 - c4_arm * c6_arm;
+        let t446 = t445 * t437;
+        let t449 = c6_arm * t270 + c4_arm * s6_arm;
+        let t453 = t446 - t428 * t449 + t268 * t440;
+        let t454 = s5_arm * c6_arm;
+        let t456 = s5_arm * s6_arm;
+        let t457 = t456 * t437;
+        let t461 = t260 * t436;
+        let t462 = t426 * t436;
+        let t463 = t428 - t462;
+        let t466 = t435 * t435;
+        let t467 = t426 * t426;
+        let t468 = t466 - t467;
+        let t474 = s6_arm * t253 + c6_arm * t302 + joint_velocities[5] * t435;
+        let t475 = t437 + t474;
+        let t484 = t449 * t475 + t445 * t463 + t268 * t468;
+        let t493 = t285 + joint_accelerations[5];
+        let t494 = t493 - t440;
+        let t496 = t436 * t436;
+        let t497 = t496 - t466;
+        let t500 = t462 + t428;
+        let t507 = t445 * t497 - t449 * t494 + t268 * t500;
+        let t516 = t467 - t496;
+        let t518 = t440 + t493;
+        let t521 = t437 - t474;
+        let t528 = t445 * t518 - t449 * t516 + t268 * t521;
+        let t544 = t449 * t462 - t446 + t268 * t493;
+        let t549 = t188 * t449;
+        let t550 = t467 + t496;
+        let t552 = t188 * t445;
+        let t560 = s6_arm * t395 + c6_arm * t204;
+        let t567 = c6_arm * t367 - s6_arm * t370;
+        let t571 = s6_arm * t367 + c6_arm * t370;
+        let t577 = t354 * t445 + t268 * t560;
+        let t581 = s6_arm * t377 + c6_arm * t231;
+        let t585 = s6_arm * t231 - c6_arm * t377;
+        let t596 = t466 + t496;
+        let t604 = c6_arm * t395 - s6_arm * t204;
+        let t615 = t354 * t449 + t268 * t604;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t6 + c2_arm * t9,
-                c2_arm * (t5 + t6) - s2_arm * t17, s2_arm * t23 + c2_arm * (t25 - t20),
-                s2_arm * (t21 - t25) - c2_arm * (t12 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, s23_arm * t52 + c23_arm * t58, c23_arm * t63 - s23_arm * t70,
-                s23_arm * t77 + c23_arm * (t79 - t73), s23_arm * (t74 - t79) - c23_arm * t86, 0.0,
-                -(t90 * t70 + c23_arm * t92), s23_arm * t92 - t90 * t63, 0.0, 0.0, 0.0, 0.0,
-                t124 * t132 - t140 + c23_arm * t142, c23_arm * t150 - (t124 * t157 + t134 * t160),
-                t124 * t168 - t134 * t171 + c23_arm * t174,
-                t124 * t180 - t134 * t182 + c23_arm * t185, t140 - t124 * t159 + c23_arm * t167,
-                t199 * t200 - t202 * t168 + t134 * t206 - c23_arm * t214,
-                t199 * t182 + t202 * t234 + t124 * t206 - c23_arm * t240, 0.0, 0.0, 0.0, 0.0,
-                t261 * t269 + t279 - t134 * t281, t273 * t295 - t261 * t302 + t134 * t307,
-                t261 * t319 + t273 * t322 - t134 * t325, t261 * t336 - t273 * t338 + t134 * t341,
-                t261 * t294 - t279 + t134 * t318,
-                t362 * t363 + t365 * t319 + t202 * t302 + t134 * t372 - t273 * t214,
-                t202 * t295 - (t362 * t338 + t365 * t403) + t261 * t214 - t134 * t410, 0.0, 0.0,
-                0.0, 0.0, t435 * t443 - t453 + t273 * t455,
-                t273 * t481 - (t435 * t488 + t447 * t491), t435 * t509 - t447 * t512 + t273 * t515,
-                t435 * t531 - t447 * t533 + t273 * t536, t453 - t435 * t490 + t273 * t508,
-                t568 * t569 + t573 * t509 + t365 * t488 + t447 * t372 - t273 * t581,
-                t568 * t533 - t573 * t617 + t365 * t491 + t435 * t372 - t273 * t625, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t7,
+                c2_arm * t7 - s2_arm * t15, s2_arm * t21 + c2_arm * (t23 - t18),
+                s2_arm * (t19 - t23) - c2_arm * (t10 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, s23_arm * t51, c23_arm * t51 - s23_arm * t62,
+                s23_arm * t69 + c23_arm * (t71 - t65), s23_arm * (t66 - t71) - c23_arm * t78, 0.0,
+                -(t82 * t62 + c23_arm * t84), s23_arm * t84 - t82 * t51, 0.0, 0.0, 0.0, 0.0,
+                t116 * t124 - t132 + c23_arm * t134, c23_arm * t144 - (t116 * t151 + t126 * t139),
+                t116 * t160 - t126 * t163 + c23_arm * t166,
+                t116 * t172 - t126 * t174 + c23_arm * t177, t132 - t116 * t138 + c23_arm * t159,
+                t189 * t190 - t192 * t160 + t126 * t196 - c23_arm * t204,
+                t189 * t174 + t192 * t220 + t116 * t196 - c23_arm * t226, 0.0, 0.0, 0.0, 0.0,
+                t245 * t253 + t263 - t126 * t265, t257 * t277 - t245 * t286 + t126 * t291,
+                t245 * t303 + t257 * t306 - t126 * t309, t245 * t320 - t257 * t322 + t126 * t325,
+                t245 * t276 - t263 + t126 * t302,
+                t344 * t345 + t347 * t303 + t192 * t286 + t126 * t354 - t257 * t204,
+                t192 * t277 - (t344 * t322 + t347 * t388) + t245 * t204 - t126 * t395, 0.0, 0.0,
+                0.0, 0.0, t420 * t428 - t438 + t257 * t440,
+                t257 * t468 - (t420 * t475 + t432 * t463), t420 * t494 - t432 * t497 + t257 * t500,
+                t420 * t516 - t432 * t518 + t257 * t521, t438 - t420 * t462 + t257 * t493,
+                t549 * t550 + t552 * t494 + t347 * t475 + t432 * t354 - t257 * t560,
+                t549 * t518 - t552 * t596 + t347 * t463 + t420 * t354 - t257 * t604, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, -t12, t20 - t21, t3, t15, joint_accelerations[1], t34, -t35,
-                joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0, -t61, t75,
-                -t83, t89, t76, t95 * t77 - t97 * (t74 + t79) + t108, t97 * t86 - t95 * t114 - t119,
-                0.0, 0.0, 0.0, 0.0, -t147, t166, -t179, -t190, t196,
-                t95 * t157 - (t220 * t200 + t222 * t168) + t226,
-                t222 * t234 - t220 * t182 + t95 * t160 - t249, 0.0, 0.0, 0.0, 0.0, t290, t314, t332,
-                t348, t359, t379 * t319 - t383 * t363 + t222 * t302 + t390,
-                t383 * t338 - t379 * t403 + t222 * t295 - t421, 0.0, 0.0, 0.0, 0.0, t468, t499,
-                t522, t543, t559, t379 * t488 - (t588 * t569 + t592 * t509) - t598,
-                t592 * t617 - t588 * t533 + t379 * t491 - t636, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t13, joint_accelerations[1], t32, -t33,
+                joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0, -t54, t67,
+                -t75, t81, t68, t87 * t69 - t89 * (t66 + t71) + t100, t89 * t78 - t87 * t106 - t111,
+                0.0, 0.0, 0.0, 0.0, -t141, t158, -t171, -t182, t137,
+                t87 * t151 + t212 * t213 + t216, t233 * t213 + t87 * t139 - t237, 0.0, 0.0, 0.0,
+                0.0, t274, t298, t316, t332, t343, t363 * t303 - t367 * t345 + t370 * t286 + t375,
+                t367 * t322 - t363 * t388 + t370 * t277 - t406, 0.0, 0.0, 0.0, 0.0, t453, t484,
+                t507, t528, t544, t363 * t475 - (t567 * t550 + t571 * t494) - t577,
+                t571 * t596 - t567 * t518 + t363 * t463 - t615, 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t61, t75,
-                -t83, t89, t76, t108, -t119, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, -t147, t166, -t179, -t190, t196,
-                t228 * t200 + 0.45 * t177 + t226, 0.45 * t189 - t252 * t234 - t249, 0.0, 0.0, 0.0,
-                0.0, t290, t314, t332, t348, t359, t392 * t363 + t394 * t319 - t252 * t302 + t390,
-                -(t392 * t338 + t394 * t403 + t252 * t295 + t421), 0.0, 0.0, 0.0, 0.0, t468, t499,
-                t522, t543, t559, t602 * t509 - t606 * t569 + t394 * t488 - t598,
-                t394 * t491 - (t606 * t533 + t602 * t617) - t636, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t54, t67,
+                -t75, t81, t68, t100, -t111, joint_accelerations[2], joint_velocities[2],
+                ::overact::math::sign(joint_velocities[2]), 1.0, -t141, t158, -t171, -t182, t137,
+                t212 + t216, t233 - t237, 0.0, 0.0, 0.0, 0.0, t274, t298, t316, t332, t343,
+                t377 * t345 + t379 * t303 - t231 * t286 + t375,
+                -(t377 * t322 + t379 * t388 + t231 * t277 + t406), 0.0, 0.0, 0.0, 0.0, t453, t484,
+                t507, t528, t544, t581 * t494 - t585 * t550 + t379 * t475 - t577,
+                t379 * t463 - (t585 * t518 + t581 * t596) - t615, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t142, t150, t174, t185, t167, -t214, -t240,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t134, t144, t166, t177, t159, -t204, -t226,
                 joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, s5_arm * t269 + t292,
-                c5_arm * t295 - s5_arm * t302, s5_arm * t319 + c5_arm * t322,
-                s5_arm * t336 - c5_arm * t338, s5_arm * t294 - t292, -(c5_arm * t214),
-                s5_arm * t214, 0.0, 0.0, 0.0, 0.0, t443 * t469 - t472 + c5_arm * t455,
-                c5_arm * t481 - (t469 * t488 + t471 * t491),
-                t469 * t509 - t471 * t512 + c5_arm * t515,
-                t469 * t531 - t471 * t533 + c5_arm * t536, t472 - t469 * t490 + c5_arm * t508,
-                t372 * t471 - c5_arm * t581, t372 * t469 - c5_arm * t625, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[3]), 1.0, t275 + s5_arm * t277,
+                c5_arm * t277 - s5_arm * t286, s5_arm * t303 + c5_arm * t306,
+                s5_arm * t320 - c5_arm * t322, -t275, -(c5_arm * t204), s5_arm * t204, 0.0, 0.0,
+                0.0, 0.0, t428 * t454 - t457 + c5_arm * t440,
+                c5_arm * t468 - (t454 * t475 + t456 * t463),
+                t454 * t494 - t456 * t497 + c5_arm * t500,
+                t454 * t516 - t456 * t518 + c5_arm * t521, t457 - t454 * t462 + c5_arm * t493,
+                t354 * t456 - c5_arm * t560, t354 * t454 - c5_arm * t604, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, -t281, t307, -t325, t341, t318, t372, -t410, joint_accelerations[4],
+                0.0, 0.0, -t265, t291, -t309, t325, t302, t354, -t395, joint_accelerations[4],
                 joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                -(s6_arm * t443 + t477), s6_arm * t488 - c6_arm * t491,
-                -(s6_arm * t509 + c6_arm * t512), -(s6_arm * t531 + c6_arm * t533),
-                s6_arm * t490 + t477, c6_arm * t372, -(s6_arm * t372), 0.0, 0.0, 0.0, 0.0,
+                -(t461 + s6_arm * t463), s6_arm * t475 - c6_arm * t463,
+                -(s6_arm * t494 + c6_arm * t497), -(s6_arm * t516 + c6_arm * t518), t461,
+                c6_arm * t354, -(s6_arm * t354), 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t455, t481, t515,
-                t536, t508, -t581, -t625, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t440, t468, t500,
+                t521, t493, -t560, -t604, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -984,7 +989,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 722 operations (338 additions, 384 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 732 intermediates.
+    /// 714 operations (334 additions, 380 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 724 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
         joints: &[f64; 6],
@@ -1023,246 +1028,246 @@ impl Rx90 {
             + c2_arm * (t48 - parameters[10] * t16);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t67 = c3_arm * t11 - s3_arm * t15;
-        let t69 = c3_arm * t13 + s3_arm * t18 + joint_velocities[2] * t67;
-        let t73 = c3_arm * t15 + s3_arm * t11;
-        let t74 = joint_velocities[1] + joint_velocities[2];
-        let t75 = t73 * t74;
-        let t80 = c3_arm * t18 - s3_arm * t13 - joint_velocities[2] * t73;
-        let t81 = t75 - t80;
-        let t84 = t73 * t67;
-        let t85 = joint_accelerations[1] + joint_accelerations[2];
-        let t86 = t84 + t85;
-        let t89 = t67 * t74;
-        let t92 = t67 * t67;
-        let t93 = t74 * t74;
-        let t96 = parameters[17] * t69 - parameters[18] * t81 + parameters[19] * t86
-            - parameters[20] * t89 + parameters[21] * (t92 - t93);
-        let t99 = 0.45 * t19;
-        let t102 = 9.81 * c2_arm;
-        let t104 = t102 + 0.45 * t23;
-        let t106 = 9.81 * s2_arm;
-        let t109 = t106 - 0.45 * (t28 + t29);
-        let t111 = c3_arm * t104 - s3_arm * t109;
-        let t116 = t89 + t69;
-        let t119 = t73 * t73;
-        let t125 = t84 - t85;
-        let t127 = parameters[17] * t75 + parameters[18] * t116
-            + parameters[19] * (t93 - t119) + parameters[20] * t80
-            - parameters[21] * t125;
-        let t134 = c3_arm * t109 + s3_arm * t104;
-        let t138 = s23_arm
-            * (t96 + parameters[22] * t89 + parameters[24] * t99 - parameters[25] * t111)
+        let t65 = joint_velocities[0] * c23_arm;
+        let t67 = c3_arm * t13 + s3_arm * t18 + joint_velocities[2] * t65;
+        let t69 = joint_velocities[0] * s23_arm;
+        let t70 = joint_velocities[1] + joint_velocities[2];
+        let t71 = t69 * t70;
+        let t76 = c3_arm * t18 - s3_arm * t13 - joint_velocities[2] * t69;
+        let t77 = t71 - t76;
+        let t80 = t69 * t65;
+        let t81 = joint_accelerations[1] + joint_accelerations[2];
+        let t82 = t80 + t81;
+        let t85 = t65 * t70;
+        let t88 = t65 * t65;
+        let t89 = t70 * t70;
+        let t92 = parameters[17] * t67 - parameters[18] * t77 + parameters[19] * t82
+            - parameters[20] * t85 + parameters[21] * (t88 - t89);
+        let t95 = 0.45 * t19;
+        let t98 = 9.81 * c2_arm;
+        let t100 = t98 + 0.45 * t23;
+        let t102 = 9.81 * s2_arm;
+        let t105 = t102 - 0.45 * (t28 + t29);
+        let t107 = c3_arm * t100 - s3_arm * t105;
+        let t112 = t85 + t67;
+        let t115 = t69 * t69;
+        let t121 = t80 - t81;
+        let t123 = parameters[17] * t71 + parameters[18] * t112
+            + parameters[19] * (t89 - t115) + parameters[20] * t76
+            - parameters[21] * t121;
+        let t130 = c3_arm * t105 + s3_arm * t100;
+        let t134 = s23_arm
+            * (t92 + parameters[22] * t85 + parameters[24] * t95 - parameters[25] * t107)
             + c23_arm
-                * (t127 - parameters[22] * t75 - parameters[23] * t99
-                    + parameters[25] * t134);
-        let t148 = 0.45 * c2_arm
-            * (parameters[23] * t81 + parameters[24] * t116
+                * (t123 - parameters[22] * t71 - parameters[23] * t95
+                    + parameters[25] * t130);
+        let t144 = 0.45 * c2_arm
+            * (parameters[23] * t77 + parameters[24] * t112
                 - parameters[25] * (joint_velocities[0] * joint_velocities[0])
-                + parameters[26] * t99);
-        let t153 = s23_arm * c4_arm;
-        let t159 = s4_arm * t73 + c4_arm * t74;
-        let t161 = c4_arm * t69 - s4_arm * t85 - joint_velocities[3] * t159;
-        let t165 = c4_arm * t73 - s4_arm * t74;
-        let t166 = t67 + joint_velocities[3];
-        let t167 = t165 * t166;
-        let t172 = s4_arm * t69 + c4_arm * t85 + joint_velocities[3] * t165;
-        let t173 = t167 + t172;
-        let t176 = t80 + joint_accelerations[3];
-        let t177 = t165 * t159;
-        let t178 = t176 - t177;
-        let t181 = t159 * t166;
-        let t184 = t159 * t159;
-        let t185 = t166 * t166;
-        let t188 = parameters[31] * t161 - parameters[32] * t173 + parameters[33] * t178
-            + parameters[34] * t181 + parameters[35] * (t184 - t185);
-        let t191 = t119 + t93;
-        let t193 = t111 - 0.45 * t191;
-        let t197 = t134 + 0.45 * t125;
-        let t200 = 0.45 * (t19 + t116);
-        let t202 = s4_arm * t197 + c4_arm * t200;
-        let t204 = t188 - parameters[36] * t181 + parameters[38] * t193
-            + parameters[39] * t202;
-        let t206 = s23_arm * s4_arm;
-        let t208 = t161 - t181;
-        let t211 = t165 * t165;
-        let t217 = t177 + t176;
-        let t219 = parameters[31] * t167 + parameters[32] * t208
-            + parameters[33] * (t185 - t211) - parameters[34] * t172
-            + parameters[35] * t217;
-        let t226 = c4_arm * t197 - s4_arm * t200;
-        let t228 = t219 - parameters[36] * t167 - parameters[37] * t193
-            + parameters[39] * t226;
-        let t235 = t181 + t161;
-        let t240 = t167 - t172;
-        let t242 = parameters[31] * t177 + parameters[32] * (t211 - t184)
-            + parameters[33] * t235 - parameters[34] * t177 + parameters[35] * t240;
-        let t248 = t242 + parameters[36] * t176 - parameters[37] * t202
-            - parameters[38] * t226;
-        let t252 = 0.45 * (s23_arm - c2_arm);
-        let t253 = s4_arm * t252;
-        let t261 = parameters[39] * t240
-            - (parameters[37] * (t184 + t185) + parameters[38] * t217)
-            + parameters[40] * t226;
-        let t263 = c4_arm * t252;
-        let t265 = t211 + t185;
-        let t271 = parameters[37] * t178 - parameters[38] * t265 - parameters[39] * t235
-            - parameters[40] * t202;
-        let t275 = t53 + t138 - t148 + t153 * t204 - t206 * t228 + c23_arm * t248
-            - (t253 * t261 + t263 * t271);
-        let t278 = s5_arm * t253;
-        let t281 = c5_arm * t165 + s5_arm * t166;
-        let t284 = c5_arm * t166 - s5_arm * t165;
-        let t285 = t281 * t284;
-        let t286 = t172 + joint_accelerations[4];
-        let t287 = t285 + t286;
-        let t289 = t281 * t281;
-        let t290 = t159 + joint_velocities[4];
-        let t291 = t290 * t290;
-        let t292 = t289 + t291;
-        let t295 = t284 * t290;
-        let t300 = c5_arm * t161 + s5_arm * t176 + joint_velocities[4] * t284;
-        let t301 = t295 - t300;
-        let t306 = c5_arm * t193 - s5_arm * t226;
-        let t308 = parameters[51] * t287 - parameters[52] * t292 + parameters[53] * t301
-            + parameters[54] * t306;
-        let t310 = c5_arm * t253;
-        let t311 = t285 - t286;
-        let t313 = t284 * t284;
-        let t317 = t281 * t290;
-        let t322 = c5_arm * t176 - s5_arm * t161 - joint_velocities[4] * t281;
-        let t323 = t317 + t322;
-        let t328 = c5_arm * t226 + s5_arm * t193;
-        let t330 = parameters[52] * t311 - parameters[51] * (t313 + t291)
-            + parameters[53] * t323 + parameters[54] * t328;
-        let t333 = t317 - t322;
-        let t335 = t295 + t300;
-        let t341 = parameters[51] * t333 + parameters[52] * t335 - parameters[53] * t265
-            + parameters[54] * t202;
-        let t346 = t153 * c5_arm + c23_arm * s5_arm;
-        let t356 = parameters[45] * t300 - parameters[46] * t333 + parameters[47] * t287
-            - parameters[48] * t295 + parameters[49] * (t313 - t291);
-        let t362 = t356 + parameters[50] * t295 + parameters[52] * t202
-            - parameters[53] * t306;
-        let t366 = c23_arm * c5_arm - t153 * s5_arm;
-        let t376 = parameters[45] * t317 + parameters[46] * t335
-            + parameters[47] * (t291 - t289) + parameters[48] * t322
-            - parameters[49] * t311;
-        let t382 = t376 - parameters[50] * t317 - parameters[51] * t202
-            + parameters[53] * t328;
-        let t394 = parameters[46] * (t289 - t313) - parameters[45] * t285
-            - parameters[47] * t301 + parameters[48] * t285 + parameters[49] * t323;
-        let t400 = t394 + parameters[50] * t286 + parameters[51] * t306
-            - parameters[52] * t328;
-        let t403 = t278 * t308 - t310 * t330 + t263 * t341 + t346 * t362 + t366 * t382
-            + t206 * t400;
-        let t410 = t322 + joint_accelerations[5];
-        let t413 = c6_arm * t281 - s6_arm * t290;
-        let t416 = s6_arm * t281 + c6_arm * t290;
-        let t417 = t413 * t416;
-        let t418 = t410 - t417;
-        let t420 = t413 * t413;
-        let t421 = t284 + joint_velocities[5];
-        let t422 = t421 * t421;
-        let t426 = t416 * t421;
-        let t431 = c6_arm * t300 - s6_arm * t286 - joint_velocities[5] * t416;
-        let t432 = t426 + t431;
-        let t437 = s6_arm * t328 + c6_arm * t202;
-        let t439 = parameters[65] * t418 - parameters[66] * (t420 + t422)
-            - parameters[67] * t432 - parameters[68] * t437;
-        let t444 = t413 * t421;
-        let t449 = s6_arm * t300 + c6_arm * t286 + joint_velocities[5] * t413;
-        let t450 = t444 - t449;
-        let t452 = t416 * t416;
-        let t455 = t417 + t410;
-        let t461 = c6_arm * t328 - s6_arm * t202;
-        let t463 = parameters[67] * t450
-            - (parameters[65] * (t452 + t422) + parameters[66] * t455)
-            + parameters[68] * t461;
-        let t466 = t444 + t449;
-        let t468 = t431 - t426;
-        let t474 = parameters[65] * t466 + parameters[66] * t468 - parameters[67] * t292
-            + parameters[68] * t306;
-        let t476 = (s6_arm * t310 - c6_arm * t263) * t439
-            - (c6_arm * t310 + s6_arm * t263) * t463 + t278 * t474;
-        let t489 = parameters[59] * t431 - parameters[60] * t466 + parameters[61] * t418
-            + parameters[62] * t426 + parameters[63] * (t452 - t422);
-        let t495 = t489 - parameters[64] * t426 + parameters[66] * t306
-            + parameters[67] * t437;
-        let t509 = parameters[59] * t444 + parameters[60] * t468
-            + parameters[61] * (t422 - t420) - parameters[62] * t449
-            + parameters[63] * t455;
-        let t515 = t509 - parameters[64] * t444 - parameters[65] * t306
-            + parameters[67] * t461;
-        let t527 = parameters[59] * t417 + parameters[60] * (t420 - t452)
-            + parameters[61] * t432 - parameters[62] * t417 + parameters[63] * t450;
-        let t533 = t527 + parameters[64] * t410 - parameters[65] * t437
-            - parameters[66] * t461;
-        let t535 = (t346 * c6_arm - t206 * s6_arm) * t495
-            - (t346 * s6_arm + t206 * c6_arm) * t515 + t366 * t533;
-        let t547 = parameters[6] * (t40 - t28) - parameters[5] * t22
+                + parameters[26] * t95);
+        let t149 = s23_arm * c4_arm;
+        let t155 = s4_arm * t69 + c4_arm * t70;
+        let t157 = c4_arm * t67 - s4_arm * t81 - joint_velocities[3] * t155;
+        let t161 = c4_arm * t69 - s4_arm * t70;
+        let t162 = t65 + joint_velocities[3];
+        let t163 = t161 * t162;
+        let t168 = s4_arm * t67 + c4_arm * t81 + joint_velocities[3] * t161;
+        let t169 = t163 + t168;
+        let t172 = t76 + joint_accelerations[3];
+        let t173 = t161 * t155;
+        let t174 = t172 - t173;
+        let t177 = t155 * t162;
+        let t180 = t155 * t155;
+        let t181 = t162 * t162;
+        let t184 = parameters[31] * t157 - parameters[32] * t169 + parameters[33] * t174
+            + parameters[34] * t177 + parameters[35] * (t180 - t181);
+        let t187 = t115 + t89;
+        let t189 = t107 - 0.45 * t187;
+        let t193 = t130 + 0.45 * t121;
+        let t196 = 0.45 * (t19 + t112);
+        let t198 = s4_arm * t193 + c4_arm * t196;
+        let t200 = t184 - parameters[36] * t177 + parameters[38] * t189
+            + parameters[39] * t198;
+        let t202 = s23_arm * s4_arm;
+        let t204 = t157 - t177;
+        let t207 = t161 * t161;
+        let t213 = t173 + t172;
+        let t215 = parameters[31] * t163 + parameters[32] * t204
+            + parameters[33] * (t181 - t207) - parameters[34] * t168
+            + parameters[35] * t213;
+        let t222 = c4_arm * t193 - s4_arm * t196;
+        let t224 = t215 - parameters[36] * t163 - parameters[37] * t189
+            + parameters[39] * t222;
+        let t231 = t177 + t157;
+        let t236 = t163 - t168;
+        let t238 = parameters[31] * t173 + parameters[32] * (t207 - t180)
+            + parameters[33] * t231 - parameters[34] * t173 + parameters[35] * t236;
+        let t244 = t238 + parameters[36] * t172 - parameters[37] * t198
+            - parameters[38] * t222;
+        let t248 = 0.45 * (s23_arm - c2_arm);
+        let t249 = s4_arm * t248;
+        let t257 = parameters[39] * t236
+            - (parameters[37] * (t180 + t181) + parameters[38] * t213)
+            + parameters[40] * t222;
+        let t259 = c4_arm * t248;
+        let t261 = t207 + t181;
+        let t267 = parameters[37] * t174 - parameters[38] * t261 - parameters[39] * t231
+            - parameters[40] * t198;
+        let t271 = t53 + t134 - t144 + t149 * t200 - t202 * t224 + c23_arm * t244
+            - (t249 * t257 + t259 * t267);
+        let t274 = s5_arm * t249;
+        let t277 = c5_arm * t161 + s5_arm * t162;
+        let t280 = c5_arm * t162 - s5_arm * t161;
+        let t281 = t277 * t280;
+        let t282 = t168 + joint_accelerations[4];
+        let t283 = t281 + t282;
+        let t285 = t277 * t277;
+        let t286 = t155 + joint_velocities[4];
+        let t287 = t286 * t286;
+        let t288 = t285 + t287;
+        let t291 = t280 * t286;
+        let t296 = c5_arm * t157 + s5_arm * t172 + joint_velocities[4] * t280;
+        let t297 = t291 - t296;
+        let t302 = c5_arm * t189 - s5_arm * t222;
+        let t304 = parameters[51] * t283 - parameters[52] * t288 + parameters[53] * t297
+            + parameters[54] * t302;
+        let t307 = t281 - t282;
+        let t309 = t280 * t280;
+        let t313 = t277 * t286;
+        let t318 = c5_arm * t172 - s5_arm * t157 - joint_velocities[4] * t277;
+        let t319 = t313 + t318;
+        let t324 = c5_arm * t222 + s5_arm * t189;
+        let t326 = parameters[52] * t307 - parameters[51] * (t309 + t287)
+            + parameters[53] * t319 + parameters[54] * t324;
+        let t329 = t313 - t318;
+        let t331 = t291 + t296;
+        let t337 = parameters[51] * t329 + parameters[52] * t331 - parameters[53] * t261
+            + parameters[54] * t198;
+        let t342 = t149 * c5_arm + c23_arm * s5_arm;
+        let t352 = parameters[45] * t296 - parameters[46] * t329 + parameters[47] * t283
+            - parameters[48] * t291 + parameters[49] * (t309 - t287);
+        let t358 = t352 + parameters[50] * t291 + parameters[52] * t198
+            - parameters[53] * t302;
+        let t362 = c23_arm * c5_arm - t149 * s5_arm;
+        let t372 = parameters[45] * t313 + parameters[46] * t331
+            + parameters[47] * (t287 - t285) + parameters[48] * t318
+            - parameters[49] * t307;
+        let t378 = t372 - parameters[50] * t313 - parameters[51] * t198
+            + parameters[53] * t324;
+        let t390 = parameters[46] * (t285 - t309) - parameters[45] * t281
+            - parameters[47] * t297 + parameters[48] * t281 + parameters[49] * t319;
+        let t396 = t390 + parameters[50] * t282 + parameters[51] * t302
+            - parameters[52] * t324;
+        let t399 = t274 * t304 - c5_arm * t249 * t326 + t259 * t337 + t342 * t358
+            + t362 * t378 + t202 * t396;
+        let t403 = s4_arm * c5_arm;
+        let t406 = s6_arm * t403 - c4_arm * c6_arm;
+        let t408 = t318 + joint_accelerations[5];
+        let t411 = c6_arm * t277 - s6_arm * t286;
+        let t414 = s6_arm * t277 + c6_arm * t286;
+        let t415 = t411 * t414;
+        let t416 = t408 - t415;
+        let t418 = t411 * t411;
+        let t419 = t280 + joint_velocities[5];
+        let t420 = t419 * t419;
+        let t424 = t414 * t419;
+        let t429 = c6_arm * t296 - s6_arm * t282 - joint_velocities[5] * t414;
+        let t430 = t424 + t429;
+        let t435 = s6_arm * t324 + c6_arm * t198;
+        let t437 = parameters[65] * t416 - parameters[66] * (t418 + t420)
+            - parameters[67] * t430 - parameters[68] * t435;
+        let t441 = c6_arm * t403 + c4_arm * s6_arm;
+        let t443 = t411 * t419;
+        let t448 = s6_arm * t296 + c6_arm * t282 + joint_velocities[5] * t411;
+        let t449 = t443 - t448;
+        let t451 = t414 * t414;
+        let t454 = t415 + t408;
+        let t460 = c6_arm * t324 - s6_arm * t198;
+        let t462 = parameters[67] * t449
+            - (parameters[65] * (t451 + t420) + parameters[66] * t454)
+            + parameters[68] * t460;
+        let t465 = t443 + t448;
+        let t467 = t429 - t424;
+        let t473 = parameters[65] * t465 + parameters[66] * t467 - parameters[67] * t288
+            + parameters[68] * t302;
+        let t488 = parameters[59] * t429 - parameters[60] * t465 + parameters[61] * t416
+            + parameters[62] * t424 + parameters[63] * (t451 - t420);
+        let t494 = t488 - parameters[64] * t424 + parameters[66] * t302
+            + parameters[67] * t435;
+        let t508 = parameters[59] * t443 + parameters[60] * t467
+            + parameters[61] * (t420 - t418) - parameters[62] * t448
+            + parameters[63] * t454;
+        let t514 = t508 - parameters[64] * t443 - parameters[65] * t302
+            + parameters[67] * t460;
+        let t526 = parameters[59] * t415 + parameters[60] * (t418 - t451)
+            + parameters[61] * t430 - parameters[62] * t415 + parameters[63] * t449;
+        let t532 = t526 + parameters[64] * t408 - parameters[65] * t435
+            - parameters[66] * t460;
+        let t534 = (t342 * c6_arm - t202 * s6_arm) * t494
+            - (t342 * s6_arm + t202 * c6_arm) * t514 + t362 * t532;
+        let t536 = t271 + t399 + t248 * t406 * t437 - t248 * t441 * t462 + t274 * t473
+            + t534;
+        let t546 = parameters[6] * (t40 - t28) - parameters[5] * t22
             + parameters[7] * t10 + parameters[8] * t22 + parameters[9] * t17;
-        let t560 = t547 + joint_accelerations[1] * parameters[10] + parameters[11] * t102
-            - parameters[12] * t106 + joint_accelerations[1] * parameters[13]
+        let t559 = t546 + joint_accelerations[1] * parameters[10] + parameters[11] * t98
+            - parameters[12] * t102 + joint_accelerations[1] * parameters[13]
             + joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
-        let t561 = 0.45 * s3_arm;
-        let t566 = t75 + t80;
-        let t572 = 0.45 * c3_arm;
-        let t576 = t89 - t69;
-        let t582 = t561
-            * (parameters[24] * t125 - parameters[23] * (t92 + t93)
-                + parameters[25] * t566 + parameters[26] * t134)
-            + t572
-                * (parameters[23] * t86 - parameters[24] * t191 + parameters[25] * t576
-                    + parameters[26] * t111);
-        let t592 = parameters[18] * (t119 - t92) - parameters[17] * t84
-            - parameters[19] * t576 + parameters[20] * t84 + parameters[21] * t566;
-        let t598 = t592 + parameters[22] * t85 + parameters[23] * t111
-            - parameters[24] * t134;
-        let t601 = t561 - 0.45;
-        let t602 = c4_arm * t601;
-        let t604 = s4_arm * t601;
-        let t615 = t602 * t261 - t604 * t271
-            + t572
-                * (parameters[37] * t173 + parameters[38] * t208 - parameters[39] * t191
-                    + parameters[40] * t193);
-        let t618 = s4_arm * t204 + c4_arm * t228;
-        let t623 = c5_arm * t602 + s5_arm * t572;
-        let t627 = c5_arm * t572 - s5_arm * t602;
-        let t632 = s4_arm * s5_arm;
-        let t634 = s4_arm * c5_arm;
-        let t638 = t632 * t382 - t634 * t362 + c4_arm * t400;
-        let t640 = t560 + t582 + t598 + t615 - t618 + t623 * t330 + t627 * t308
-            + t604 * t341 + t638;
-        let t651 = (c6_arm * t623 - s6_arm * t604) * t463
-            - (s6_arm * t623 + c6_arm * t604) * t439 + t627 * t474;
-        let t662 = (s6_arm * t634 - c4_arm * c6_arm) * t515
-            - (c6_arm * t634 + c4_arm * s6_arm) * t495 + t632 * t533;
-        let t672 = 0.45 * s4_arm;
-        let t674 = 0.45 * c4_arm;
-        let t678 = t598 + joint_accelerations[2] * parameters[27]
+        let t560 = 0.45 * s3_arm;
+        let t565 = t71 + t76;
+        let t571 = 0.45 * c3_arm;
+        let t575 = t85 - t67;
+        let t581 = t560
+            * (parameters[24] * t121 - parameters[23] * (t88 + t89)
+                + parameters[25] * t565 + parameters[26] * t130)
+            + t571
+                * (parameters[23] * t82 - parameters[24] * t187 + parameters[25] * t575
+                    + parameters[26] * t107);
+        let t591 = parameters[18] * (t115 - t88) - parameters[17] * t80
+            - parameters[19] * t575 + parameters[20] * t80 + parameters[21] * t565;
+        let t597 = t591 + parameters[22] * t81 + parameters[23] * t107
+            - parameters[24] * t130;
+        let t600 = t560 - 0.45;
+        let t601 = c4_arm * t600;
+        let t603 = s4_arm * t600;
+        let t614 = t601 * t257 - t603 * t267
+            + t571
+                * (parameters[37] * t169 + parameters[38] * t204 - parameters[39] * t187
+                    + parameters[40] * t189);
+        let t617 = s4_arm * t200 + c4_arm * t224;
+        let t622 = c5_arm * t601 + s5_arm * t571;
+        let t626 = c5_arm * t571 - s5_arm * t601;
+        let t631 = s4_arm * s5_arm;
+        let t636 = t631 * t378 - t403 * t358 + c4_arm * t396;
+        let t638 = t559 + t581 + t597 + t614 - t617 + t622 * t326 + t626 * t304
+            + t603 * t337 + t636;
+        let t649 = (c6_arm * t622 - s6_arm * t603) * t462
+            - (s6_arm * t622 + c6_arm * t603) * t437 + t626 * t473;
+        let t654 = t406 * t514 - t441 * t494 + t631 * t532;
+        let t664 = 0.45 * s4_arm;
+        let t666 = 0.45 * c4_arm;
+        let t670 = t597 + joint_accelerations[2] * parameters[27]
             + joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30] + t672 * t271 - t674 * t261 - t618;
-        let t679 = s5_arm * t674;
-        let t681 = c5_arm * t674;
-        let t698 = (s6_arm * t672 - c6_arm * t681) * t463
-            + (s6_arm * t681 + c6_arm * t672) * t439 + t679 * t474;
-        let t711 = t248 + joint_accelerations[3] * parameters[41]
+            + parameters[30] + t664 * t267 - t666 * t257 - t617;
+        let t671 = s5_arm * t666;
+        let t673 = c5_arm * t666;
+        let t690 = (s6_arm * t664 - c6_arm * t673) * t462
+            + (s6_arm * t673 + c6_arm * t664) * t437 + t671 * t473;
+        let t703 = t244 + joint_accelerations[3] * parameters[41]
             + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + s5_arm * t362 + c5_arm * t382;
-        let t730 = t400 + joint_accelerations[4] * parameters[55]
+            + parameters[44] + s5_arm * t358 + c5_arm * t378;
+        let t722 = t396 + joint_accelerations[4] * parameters[55]
             + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58] - (s6_arm * t495 + c6_arm * t515);
+            + parameters[58] - (s6_arm * t494 + c6_arm * t514);
         [
-            t275 + t403 + t476 + t535, t640 + t651 + t662,
-            t678 + t679 * t308 - t681 * t330 - t672 * t341 + t638 + t698 + t662,
-            t711 + s5_arm * c6_arm * t495 - s5_arm * s6_arm * t515 + c5_arm * t533, t730,
-            t533 + joint_accelerations[5] * parameters[69]
+            t536, t638 + t649 + t654,
+            t670 + t671 * t304 - t673 * t326 - t664 * t337 + t636 + t690 + t654,
+            t703 + s5_arm * c6_arm * t494 - s5_arm * s6_arm * t514 + c5_arm * t532, t722,
+            t532 + joint_accelerations[5] * parameters[69]
                 + joint_velocities[5] * parameters[70]
                 + ::overact::math::signed(parameters[71], joint_velocities[5])
                 + parameters[72],
@@ -1276,7 +1281,7 @@ impl Rx90 {
     ///
     /// Output: 6 x 6.
     ///
-    /// 737 operations (328 additions, 409 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 726 intermediates.
+    /// 717 operations (320 additions, 397 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 706 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 6], parameters: &[f64; 73]) -> [[f64; 6]; 6] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
@@ -1337,182 +1342,177 @@ impl Rx90 {
             + t54
                 * (t100 * parameters[52] - t109 * parameters[51] + parameters[54] * t54)
             + t133 + t143 + t47 * t153;
-        let t162 = s6_arm * t106 - c6_arm * t54;
-        let t166 = t100 * c6_arm - t47 * s6_arm;
-        let t174 = c6_arm * t106 + s6_arm * t54;
-        let t179 = t100 * s6_arm + t47 * c6_arm;
-        let t184 = t162
-            * (t109 * parameters[65] - t166 * parameters[67] + parameters[68] * t162)
-            + t174
-                * (parameters[68] * t174 + t109 * parameters[66]
-                    + t179 * parameters[67]);
-        let t201 = t166
-            * (t166 * parameters[59] - t179 * parameters[60] + t109 * parameters[61]
-                + parameters[66] * t96 - parameters[67] * t162);
-        let t211 = t179
-            * (t166 * parameters[60] - t179 * parameters[62] + t109 * parameters[63]
-                - parameters[65] * t96 - parameters[67] * t174);
-        let t221 = t166 * parameters[61] - t179 * parameters[63] + t109 * parameters[64]
-            + parameters[65] * t162 + parameters[66] * t174;
-        let t224 = t184
+        let t160 = s4_arm * c5_arm;
+        let t163 = s6_arm * t160 - c4_arm * c6_arm;
+        let t164 = t53 * t163;
+        let t168 = t100 * c6_arm - t47 * s6_arm;
+        let t176 = c6_arm * t160 + c4_arm * s6_arm;
+        let t177 = t53 * t176;
+        let t182 = t100 * s6_arm + t47 * c6_arm;
+        let t187 = t164
+            * (t109 * parameters[65] - t168 * parameters[67] + parameters[68] * t164)
+            + t177
+                * (parameters[68] * t177 + t109 * parameters[66]
+                    + t182 * parameters[67]);
+        let t204 = t168
+            * (t168 * parameters[59] - t182 * parameters[60] + t109 * parameters[61]
+                + parameters[66] * t96 - parameters[67] * t164);
+        let t214 = t182
+            * (t168 * parameters[60] - t182 * parameters[62] + t109 * parameters[63]
+                - parameters[65] * t96 - parameters[67] * t177);
+        let t224 = t168 * parameters[61] - t182 * parameters[63] + t109 * parameters[64]
+            + parameters[65] * t164 + parameters[66] * t177;
+        let t227 = t187
             + t96
-                * (t179 * parameters[65] + t166 * parameters[66] + parameters[68] * t96)
-            + t201 - t211 + t109 * t221;
-        let t229 = 0.45 * c3_arm;
-        let t233 = 0.45 * s3_arm;
-        let t238 = s2_arm * parameters[7] + c2_arm * parameters[9]
-            + s23_arm * (parameters[19] - parameters[25] * t229)
-            + c23_arm * (parameters[21] + parameters[25] * t233);
-        let t242 = s4_arm * parameters[31] + c4_arm * parameters[32];
-        let t244 = t233 - 0.45;
-        let t245 = s4_arm * t244;
-        let t247 = parameters[38] * t229 - t242 + parameters[39] * t245;
-        let t249 = c4_arm * t244;
-        let t253 = s4_arm * parameters[32] + c4_arm * parameters[34];
-        let t256 = parameters[39] * t249 - (t253 + parameters[37] * t229);
-        let t261 = s4_arm * parameters[33] + c4_arm * parameters[35];
-        let t265 = t261 + parameters[37] * t245 + parameters[38] * t249;
-        let t269 = s4_arm * s5_arm;
-        let t271 = s4_arm * c5_arm;
-        let t275 = parameters[46] * t269 - parameters[45] * t271
+                * (t182 * parameters[65] + t168 * parameters[66] + parameters[68] * t96)
+            + t204 - t214 + t109 * t224;
+        let t232 = 0.45 * c3_arm;
+        let t236 = 0.45 * s3_arm;
+        let t241 = s2_arm * parameters[7] + c2_arm * parameters[9]
+            + s23_arm * (parameters[19] - parameters[25] * t232)
+            + c23_arm * (parameters[21] + parameters[25] * t236);
+        let t245 = s4_arm * parameters[31] + c4_arm * parameters[32];
+        let t247 = t236 - 0.45;
+        let t248 = s4_arm * t247;
+        let t250 = parameters[38] * t232 - t245 + parameters[39] * t248;
+        let t252 = c4_arm * t247;
+        let t256 = s4_arm * parameters[32] + c4_arm * parameters[34];
+        let t259 = parameters[39] * t252 - (t256 + parameters[37] * t232);
+        let t264 = s4_arm * parameters[33] + c4_arm * parameters[35];
+        let t268 = t264 + parameters[37] * t248 + parameters[38] * t252;
+        let t272 = s4_arm * s5_arm;
+        let t277 = parameters[46] * t272 - parameters[45] * t160
             + c4_arm * parameters[47];
-        let t280 = c5_arm * t229 - s5_arm * t249;
-        let t282 = t275 + parameters[52] * t245 - parameters[53] * t280;
-        let t288 = parameters[48] * t269 - parameters[46] * t271
+        let t282 = c5_arm * t232 - s5_arm * t252;
+        let t284 = t277 + parameters[52] * t248 - parameters[53] * t282;
+        let t290 = parameters[48] * t272 - parameters[46] * t160
             + c4_arm * parameters[49];
-        let t293 = c5_arm * t249 + s5_arm * t229;
-        let t295 = t288 - parameters[51] * t245 + parameters[53] * t293;
-        let t302 = parameters[49] * t269 - parameters[47] * t271
+        let t295 = c5_arm * t252 + s5_arm * t232;
+        let t297 = t290 - parameters[51] * t248 + parameters[53] * t295;
+        let t304 = parameters[49] * t272 - parameters[47] * t160
             + c4_arm * parameters[50];
-        let t306 = t302 + parameters[51] * t280 - parameters[52] * t293;
-        let t309 = t238 + t45 * t247 - t47 * t256 - c23_arm * t265 + t100 * t282
-            + t109 * t295 + t47 * t306;
-        let t312 = s6_arm * t271 - c4_arm * c6_arm;
-        let t316 = c6_arm * t271 + c4_arm * s6_arm;
-        let t320 = parameters[60] * t312 - parameters[59] * t316 + parameters[61] * t269;
-        let t325 = s6_arm * t293 + c6_arm * t245;
-        let t327 = t320 + parameters[66] * t280 + parameters[67] * t325;
-        let t333 = parameters[62] * t312 - parameters[60] * t316 + parameters[63] * t269;
-        let t338 = c6_arm * t293 - s6_arm * t245;
-        let t340 = t333 - parameters[65] * t280 + parameters[67] * t338;
-        let t347 = parameters[63] * t312 - parameters[61] * t316 + parameters[64] * t269;
-        let t351 = t347 - parameters[65] * t325 - parameters[66] * t338;
-        let t354 = t309 + t166 * t327 - t179 * t340 + t109 * t351;
-        let t358 = c4_arm * parameters[39];
-        let t360 = t253 + 0.45 * t358;
-        let t362 = s4_arm * parameters[39];
-        let t364 = t242 + 0.45 * t362;
-        let t367 = 0.45 * s4_arm;
-        let t370 = 0.45 * c4_arm;
-        let t372 = parameters[37] * t367 - t261 + parameters[38] * t370;
-        let t378 = s5_arm * t370;
-        let t380 = t275 - parameters[52] * t367 - parameters[53] * t378;
-        let t384 = c5_arm * t370;
-        let t386 = t288 + parameters[51] * t367 - parameters[53] * t384;
-        let t392 = t302 + parameters[51] * t378 + parameters[52] * t384;
-        let t395 = s23_arm * parameters[19] + c23_arm * parameters[21] + t47 * t360
-            - t45 * t364 + c23_arm * t372 + t100 * t380 + t109 * t386 + t47 * t392;
-        let t400 = s6_arm * t384 + c6_arm * t367;
-        let t402 = t320 + parameters[66] * t378 - parameters[67] * t400;
-        let t408 = s6_arm * t367 - c6_arm * t384;
-        let t410 = t333 - parameters[65] * t378 + parameters[67] * t408;
-        let t416 = t347 + parameters[65] * t400 - parameters[66] * t408;
-        let t419 = t395 + t166 * t402 - t179 * t410 + t109 * t416;
-        let t422 = s5_arm * parameters[52] - c5_arm * parameters[51];
-        let t424 = s5_arm * parameters[53];
-        let t426 = c5_arm * parameters[53];
-        let t432 = s5_arm * parameters[45] + c5_arm * parameters[46];
-        let t436 = s5_arm * parameters[46] + c5_arm * parameters[48];
-        let t441 = s5_arm * parameters[47] + c5_arm * parameters[49];
-        let t444 = t54 * t422 - (t96 * t424 + t106 * t426) + t100 * t432 + t109 * t436
-            + t47 * t441;
-        let t447 = s5_arm * c6_arm;
-        let t449 = c5_arm * parameters[65] - parameters[67] * t447;
-        let t452 = s5_arm * s6_arm;
-        let t454 = c5_arm * parameters[66] + parameters[67] * t452;
-        let t459 = parameters[65] * t452 + parameters[66] * t447;
-        let t466 = parameters[59] * t447 - parameters[60] * t452
+        let t308 = t304 + parameters[51] * t282 - parameters[52] * t295;
+        let t311 = t241 + t45 * t250 - t47 * t259 - c23_arm * t268 + t100 * t284
+            + t109 * t297 + t47 * t308;
+        let t316 = parameters[60] * t163 - parameters[59] * t176 + parameters[61] * t272;
+        let t321 = s6_arm * t295 + c6_arm * t248;
+        let t323 = t316 + parameters[66] * t282 + parameters[67] * t321;
+        let t329 = parameters[62] * t163 - parameters[60] * t176 + parameters[63] * t272;
+        let t334 = c6_arm * t295 - s6_arm * t248;
+        let t336 = t329 - parameters[65] * t282 + parameters[67] * t334;
+        let t343 = parameters[63] * t163 - parameters[61] * t176 + parameters[64] * t272;
+        let t347 = t343 - parameters[65] * t321 - parameters[66] * t334;
+        let t350 = t311 + t168 * t323 - t182 * t336 + t109 * t347;
+        let t354 = c4_arm * parameters[39];
+        let t356 = t256 + 0.45 * t354;
+        let t358 = s4_arm * parameters[39];
+        let t360 = t245 + 0.45 * t358;
+        let t363 = 0.45 * s4_arm;
+        let t366 = 0.45 * c4_arm;
+        let t368 = parameters[37] * t363 - t264 + parameters[38] * t366;
+        let t374 = s5_arm * t366;
+        let t376 = t277 - parameters[52] * t363 - parameters[53] * t374;
+        let t380 = c5_arm * t366;
+        let t382 = t290 + parameters[51] * t363 - parameters[53] * t380;
+        let t388 = t304 + parameters[51] * t374 + parameters[52] * t380;
+        let t391 = s23_arm * parameters[19] + c23_arm * parameters[21] + t47 * t356
+            - t45 * t360 + c23_arm * t368 + t100 * t376 + t109 * t382 + t47 * t388;
+        let t396 = s6_arm * t380 + c6_arm * t363;
+        let t398 = t316 + parameters[66] * t374 - parameters[67] * t396;
+        let t404 = s6_arm * t363 - c6_arm * t380;
+        let t406 = t329 - parameters[65] * t374 + parameters[67] * t404;
+        let t412 = t343 + parameters[65] * t396 - parameters[66] * t404;
+        let t415 = t391 + t168 * t398 - t182 * t406 + t109 * t412;
+        let t418 = s5_arm * parameters[52] - c5_arm * parameters[51];
+        let t424 = s5_arm * parameters[45] + c5_arm * parameters[46];
+        let t428 = s5_arm * parameters[46] + c5_arm * parameters[48];
+        let t433 = s5_arm * parameters[47] + c5_arm * parameters[49];
+        let t437 = t76 + t54 * t418 - t63 * parameters[53] + t100 * t424 + t109 * t428
+            + t47 * t433;
+        let t439 = s5_arm * c6_arm;
+        let t441 = c5_arm * parameters[65] - parameters[67] * t439;
+        let t444 = s5_arm * s6_arm;
+        let t446 = c5_arm * parameters[66] + parameters[67] * t444;
+        let t451 = parameters[65] * t444 + parameters[66] * t439;
+        let t458 = parameters[59] * t439 - parameters[60] * t444
             + c5_arm * parameters[61];
-        let t472 = parameters[60] * t447 - parameters[62] * t452
+        let t464 = parameters[60] * t439 - parameters[62] * t444
             + c5_arm * parameters[63];
-        let t479 = parameters[61] * t447 - parameters[63] * t452
+        let t471 = parameters[61] * t439 - parameters[63] * t444
             + c5_arm * parameters[64];
-        let t482 = t162 * t449 + t174 * t454 + t96 * t459 + t166 * t466 - t179 * t472
-            + t109 * t479;
-        let t483 = t76 + t444 + t482;
-        let t484 = s6_arm * parameters[67];
-        let t486 = c6_arm * parameters[67];
-        let t491 = c6_arm * parameters[65] - s6_arm * parameters[66];
-        let t496 = s6_arm * parameters[60] + c6_arm * parameters[62];
-        let t500 = s6_arm * parameters[59] + c6_arm * parameters[60];
-        let t505 = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let t508 = t162 * t484 + t174 * t486 + t96 * t491 + t179 * t496 - t166 * t500
-            - t109 * t505;
-        let t509 = t153 + t508;
-        let t521 = parameters[22] + parameters[23] * t229 - parameters[24] * t233;
-        let t523 = parameters[10] + parameters[13]
-            + t233 * (parameters[26] * t233 - parameters[24])
-            + t229 * (parameters[23] + parameters[26] * t229) + t521;
-        let t533 = c4_arm * parameters[37] - s4_arm * parameters[38];
-        let t537 = t249 * (parameters[40] * t249 - t358)
-            - t245 * (t362 - parameters[40] * t245)
-            + t229 * (t533 + parameters[40] * t229);
-        let t545 = parameters[53] * t269 - c4_arm * parameters[52];
-        let t551 = c4_arm * parameters[51] + parameters[53] * t271;
-        let t559 = parameters[52] * t271 + parameters[51] * t269;
-        let t562 = t293 * (t545 + parameters[54] * t293)
-            + t280 * (t551 + parameters[54] * t280)
-            + t245 * (parameters[54] * t245 - t559);
-        let t569 = t523 + t537 - (s4_arm * t247 + c4_arm * t256) + t562 + t269 * t295
-            - t271 * t282 + c4_arm * t306;
-        let t573 = parameters[66] * t269 - parameters[67] * t312;
-        let t578 = parameters[65] * t269 + parameters[67] * t316;
-        let t586 = parameters[65] * t312 + parameters[66] * t316;
-        let t589 = t338 * (parameters[68] * t338 - t573)
-            - t325 * (t578 - parameters[68] * t325)
-            + t280 * (parameters[68] * t280 - t586);
-        let t599 = parameters[40] * t370 + t358;
-        let t602 = t362 + parameters[40] * t367;
-        let t608 = s4_arm * t364 + c4_arm * t360;
-        let t612 = t545 - parameters[54] * t384;
-        let t615 = t551 + parameters[54] * t378;
-        let t619 = t559 + parameters[54] * t367;
-        let t626 = t269 * t386 - t271 * t380 + c4_arm * t392;
-        let t628 = t521 + t229 * t533 - (t249 * t599 + t245 * t602) + t608 + t293 * t612
-            + t280 * t615 - t245 * t619 + t626;
-        let t630 = parameters[68] * t408 - t573;
-        let t633 = t578 + parameters[68] * t400;
-        let t637 = parameters[68] * t378 - t586;
-        let t644 = t312 * t410 - t316 * t402 + t269 * t416;
-        let t646 = t628 + t338 * t630 - t325 * t633 + t280 * t637 + t644;
-        let t656 = t269 * t436 - t271 * t432 + c4_arm * t441;
-        let t668 = t312 * t472 - t316 * t466 + t269 * t479;
-        let t670 = t293 * t426 - t280 * t424 + t245 * t422 + t656 - t265 + t280 * t459
-            - (t338 * t454 + t325 * t449) + t668;
-        let t680 = t316 * t500 - t312 * t496 - t269 * t505;
-        let t682 = t306 + t280 * t491 - (t338 * t486 + t325 * t484) + t680;
-        let t695 = parameters[22] + parameters[27] + t367 * t602 + t370 * t599 + t608
-            + t378 * t615 - t384 * t612 + t367 * t619 + t626;
-        let t716 = t372 + t656 - (t378 * t424 + t384 * t426 + t367 * t422) + t400 * t449
-            - t408 * t454 + t378 * t459 + t668;
-        let t723 = t392 + t400 * t484 - t408 * t486 + t378 * t491 + t680;
-        let t734 = parameters[36] + parameters[41] + s5_arm * t432 + c5_arm * t436
-            + t447 * t466 - t452 * t472 + c5_arm * t479;
-        let t740 = t441 + t452 * t496 - t447 * t500 - c5_arm * t505;
+        let t474 = t164 * t441 + t177 * t446 + t96 * t451 + t168 * t458 - t182 * t464
+            + t109 * t471;
+        let t475 = t437 + t474;
+        let t479 = c6_arm * parameters[65] - s6_arm * parameters[66];
+        let t484 = s6_arm * parameters[60] + c6_arm * parameters[62];
+        let t488 = s6_arm * parameters[59] + c6_arm * parameters[60];
+        let t493 = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let t497 = t153 + t106 * parameters[67] + t96 * t479 + t182 * t484 - t168 * t488
+            - t109 * t493;
+        let t509 = parameters[22] + parameters[23] * t232 - parameters[24] * t236;
+        let t511 = parameters[10] + parameters[13]
+            + t236 * (parameters[26] * t236 - parameters[24])
+            + t232 * (parameters[23] + parameters[26] * t232) + t509;
+        let t521 = c4_arm * parameters[37] - s4_arm * parameters[38];
+        let t525 = t252 * (parameters[40] * t252 - t354)
+            - t248 * (t358 - parameters[40] * t248)
+            + t232 * (t521 + parameters[40] * t232);
+        let t533 = parameters[53] * t272 - c4_arm * parameters[52];
+        let t539 = c4_arm * parameters[51] + parameters[53] * t160;
+        let t547 = parameters[52] * t160 + parameters[51] * t272;
+        let t550 = t295 * (t533 + parameters[54] * t295)
+            + t282 * (t539 + parameters[54] * t282)
+            + t248 * (parameters[54] * t248 - t547);
+        let t557 = t511 + t525 - (s4_arm * t250 + c4_arm * t259) + t550 + t272 * t297
+            - t160 * t284 + c4_arm * t308;
+        let t561 = parameters[66] * t272 - parameters[67] * t163;
+        let t566 = parameters[65] * t272 + parameters[67] * t176;
+        let t574 = parameters[65] * t163 + parameters[66] * t176;
+        let t577 = t334 * (parameters[68] * t334 - t561)
+            - t321 * (t566 - parameters[68] * t321)
+            + t282 * (parameters[68] * t282 - t574);
+        let t587 = parameters[40] * t366 + t354;
+        let t590 = t358 + parameters[40] * t363;
+        let t596 = s4_arm * t360 + c4_arm * t356;
+        let t600 = t533 - parameters[54] * t380;
+        let t603 = t539 + parameters[54] * t374;
+        let t607 = t547 + parameters[54] * t363;
+        let t614 = t272 * t382 - t160 * t376 + c4_arm * t388;
+        let t616 = t509 + t232 * t521 - (t252 * t587 + t248 * t590) + t596 + t295 * t600
+            + t282 * t603 - t248 * t607 + t614;
+        let t618 = parameters[68] * t404 - t561;
+        let t621 = t566 + parameters[68] * t396;
+        let t625 = parameters[68] * t374 - t574;
+        let t632 = t163 * t406 - t176 * t398 + t272 * t412;
+        let t634 = t616 + t334 * t618 - t321 * t621 + t282 * t625 + t632;
+        let t642 = t272 * t428 - t160 * t424 + c4_arm * t433;
+        let t654 = t163 * t464 - t176 * t458 + t272 * t471;
+        let t656 = parameters[53] * t252 + t248 * t418 + t642 - t268 + t282 * t451
+            - (t334 * t446 + t321 * t441) + t654;
+        let t664 = t176 * t488 - t163 * t484 - t272 * t493;
+        let t666 = t308 + t282 * t479 - parameters[67] * t295 + t664;
+        let t679 = parameters[22] + parameters[27] + t363 * t590 + t366 * t587 + t596
+            + t374 * t603 - t380 * t600 + t363 * t607 + t614;
+        let t698 = t368 + t642 - (parameters[53] * t366 + t363 * t418) + t396 * t441
+            - t404 * t446 + t374 * t451 + t654;
+        let t703 = t388 + parameters[67] * t380 + t374 * t479 + t664;
+        let t714 = parameters[36] + parameters[41] + s5_arm * t424 + c5_arm * t428
+            + t439 * t458 - t444 * t464 + c5_arm * t471;
+        let t720 = t433 + t444 * t484 - t439 * t488 - c5_arm * t493;
         [
-            [t93 + t156 + t224, t354, t419, t483, t509, t221],
+            [t93 + t156 + t227, t350, t415, t475, t497, t224],
             [
-                t354, t569 + t589 + t312 * t340 - t316 * t327 + t269 * t351, t646, t670, t682, t351,
+                t350, t557 + t577 + t163 * t336 - t176 * t323 + t272 * t347, t634, t656, t666, t347,
             ],
             [
-                t419, t646, t695 + t408 * t630 + t400 * t633 + t378 * t637 + t644, t716, t723, t416,
+                t415, t634, t679 + t404 * t618 + t396 * t621 + t374 * t625 + t632, t698, t703, t412,
             ],
-            [t483, t670, t716, t734, t740, t479],
+            [t475, t656, t698, t714, t720, t471],
             [
-                t509, t682, t723, t740,
-                parameters[50] + parameters[55] + s6_arm * t500 + c6_arm * t496, -t505,
+                t497, t666, t703, t720,
+                parameters[50] + parameters[55] + s6_arm * t488 + c6_arm * t484, -t493,
             ],
-            [t221, t351, t416, t479, -t505, parameters[64] + parameters[69]],
+            [t224, t347, t412, t471, -t493, parameters[64] + parameters[69]],
         ]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -1524,7 +1524,7 @@ impl Rx90 {
     ///
     /// Output: 6.
     ///
-    /// 672 operations (305 additions, 367 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 682 intermediates.
+    /// 656 operations (297 additions, 359 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 666 intermediates.
     #[must_use]
     pub fn bias(
         joints: &[f64; 6],
@@ -1553,226 +1553,224 @@ impl Rx90 {
             + c2_arm * (t38 - parameters[10] * t10);
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t57 = c3_arm * t6 - s3_arm * t9;
-        let t59 = c3_arm * t7 - s3_arm * t10 + joint_velocities[2] * t57;
-        let t66 = c3_arm * t9 + s3_arm * t6;
-        let t68 = s3_arm * t7 + c3_arm * t10 + joint_velocities[2] * t66;
-        let t69 = 2.0 * t68;
-        let t72 = t66 * t57;
-        let t77 = t57 * t57;
-        let t78 = joint_velocities[1] + joint_velocities[2];
-        let t79 = t78 * t78;
-        let t82 = parameters[17] * t59 - parameters[18] * t69 + parameters[19] * t72
-            - parameters[20] * t59 + parameters[21] * (t77 - t79);
-        let t85 = 0.9 * t10;
-        let t88 = 9.81 * c2_arm;
-        let t90 = t88 + 0.45 * t14;
-        let t92 = 9.81 * s2_arm;
-        let t95 = t92 - 0.45 * (t19 + t20);
-        let t97 = c3_arm * t90 - s3_arm * t95;
-        let t102 = 2.0 * t59;
-        let t105 = t66 * t66;
-        let t112 = parameters[17] * t68 + parameters[18] * t102
-            + parameters[19] * (t79 - t105) - parameters[20] * t68
-            - parameters[21] * t72;
-        let t119 = c3_arm * t95 + s3_arm * t90;
-        let t123 = s23_arm
-            * (t82 + parameters[22] * t59 + parameters[24] * t85 - parameters[25] * t97)
+        let t52 = joint_velocities[0] * c23_arm;
+        let t53 = joint_velocities[1] + joint_velocities[2];
+        let t54 = t52 * t53;
+        let t56 = joint_velocities[0] * s23_arm;
+        let t57 = t56 * t53;
+        let t58 = 2.0 * t57;
+        let t61 = t56 * t52;
+        let t66 = t52 * t52;
+        let t67 = t53 * t53;
+        let t70 = parameters[17] * t54 - parameters[18] * t58 + parameters[19] * t61
+            - parameters[20] * t54 + parameters[21] * (t66 - t67);
+        let t73 = 0.9 * t10;
+        let t76 = 9.81 * c2_arm;
+        let t78 = t76 + 0.45 * t14;
+        let t80 = 9.81 * s2_arm;
+        let t83 = t80 - 0.45 * (t19 + t20);
+        let t85 = c3_arm * t78 - s3_arm * t83;
+        let t90 = 2.0 * t54;
+        let t93 = t56 * t56;
+        let t100 = parameters[17] * t57 + parameters[18] * t90
+            + parameters[19] * (t67 - t93) - parameters[20] * t57 - parameters[21] * t61;
+        let t107 = c3_arm * t83 + s3_arm * t78;
+        let t111 = s23_arm
+            * (t70 + parameters[22] * t54 + parameters[24] * t73 - parameters[25] * t85)
             + c23_arm
-                * (t112 - parameters[22] * t68 - parameters[23] * t85
-                    + parameters[25] * t119);
-        let t133 = 0.45 * c2_arm
-            * (parameters[23] * t69 + parameters[24] * t102
+                * (t100 - parameters[22] * t57 - parameters[23] * t73
+                    + parameters[25] * t107);
+        let t121 = 0.45 * c2_arm
+            * (parameters[23] * t58 + parameters[24] * t90
                 - parameters[25] * (joint_velocities[0] * joint_velocities[0])
-                + parameters[26] * t85);
-        let t139 = 0.45 * (s23_arm - c2_arm);
-        let t140 = c4_arm * t139;
-        let t143 = c4_arm * t66 - s4_arm * t78;
-        let t146 = s4_arm * t66 + c4_arm * t78;
-        let t147 = t143 * t146;
-        let t148 = t147 + t68;
-        let t150 = t143 * t143;
-        let t151 = t57 + joint_velocities[3];
-        let t152 = t151 * t151;
-        let t153 = t150 + t152;
-        let t156 = t146 * t151;
-        let t159 = c4_arm * t59 - joint_velocities[3] * t146;
-        let t160 = t156 + t159;
-        let t164 = t119 + 0.45 * t72;
-        let t167 = 0.9 * (t10 + t59);
-        let t169 = s4_arm * t164 + c4_arm * t167;
-        let t171 = parameters[37] * t148 + parameters[38] * t153 + parameters[39] * t160
-            + parameters[40] * t169;
-        let t173 = s4_arm * t139;
-        let t174 = t68 - t147;
-        let t176 = t146 * t146;
-        let t180 = t143 * t151;
-        let t183 = s4_arm * t59 + joint_velocities[3] * t143;
-        let t184 = t180 - t183;
-        let t189 = c4_arm * t164 - s4_arm * t167;
-        let t191 = parameters[38] * t174 - parameters[37] * (t176 + t152)
-            + parameters[39] * t184 + parameters[40] * t189;
-        let t194 = s23_arm * c4_arm;
-        let t196 = t180 + t183;
-        let t205 = parameters[31] * t159 - parameters[32] * t196 - parameters[33] * t148
-            + parameters[34] * t156 + parameters[35] * (t176 - t152);
-        let t208 = t105 + t79;
-        let t210 = t97 - 0.45 * t208;
-        let t214 = t205 - parameters[36] * t156 + parameters[38] * t210
-            + parameters[39] * t169;
-        let t216 = s23_arm * s4_arm;
-        let t218 = t159 - t156;
-        let t227 = parameters[31] * t180 + parameters[32] * t218
-            + parameters[33] * (t152 - t150) - parameters[34] * t183
-            - parameters[35] * t174;
-        let t233 = t227 - parameters[36] * t180 - parameters[37] * t210
-            + parameters[39] * t189;
-        let t245 = parameters[31] * t147 + parameters[32] * (t150 - t176)
-            + parameters[33] * t160 - parameters[34] * t147 + parameters[35] * t184;
-        let t251 = t245 - parameters[36] * t68 - parameters[37] * t169
-            - parameters[38] * t189;
-        let t255 = t43 + t123 - t133 + t140 * t171 - t173 * t191 + t194 * t214
-            - t216 * t233 + c23_arm * t251;
-        let t258 = s5_arm * t173;
-        let t261 = c5_arm * t143 + s5_arm * t151;
-        let t264 = c5_arm * t151 - s5_arm * t143;
-        let t265 = t261 * t264;
-        let t266 = t265 + t183;
-        let t268 = t261 * t261;
-        let t269 = t146 + joint_velocities[4];
-        let t270 = t269 * t269;
-        let t271 = t268 + t270;
-        let t274 = t264 * t269;
-        let t279 = c5_arm * t159 - s5_arm * t68 + joint_velocities[4] * t264;
-        let t280 = t274 - t279;
-        let t285 = c5_arm * t210 - s5_arm * t189;
-        let t287 = parameters[51] * t266 - parameters[52] * t271 + parameters[53] * t280
-            + parameters[54] * t285;
-        let t289 = c5_arm * t173;
-        let t290 = t265 - t183;
-        let t292 = t264 * t264;
-        let t296 = t261 * t269;
-        let t301 = s5_arm * t159 + c5_arm * t68 + joint_velocities[4] * t261;
-        let t302 = t296 - t301;
-        let t307 = c5_arm * t189 + s5_arm * t210;
-        let t309 = parameters[52] * t290 - parameters[51] * (t292 + t270)
-            + parameters[53] * t302 + parameters[54] * t307;
-        let t312 = t296 + t301;
-        let t314 = t274 + t279;
-        let t320 = parameters[51] * t312 + parameters[52] * t314 - parameters[53] * t153
-            + parameters[54] * t169;
-        let t325 = t194 * c5_arm + c23_arm * s5_arm;
-        let t335 = parameters[45] * t279 - parameters[46] * t312 + parameters[47] * t266
-            - parameters[48] * t274 + parameters[49] * (t292 - t270);
-        let t341 = t335 + parameters[50] * t274 + parameters[52] * t169
-            - parameters[53] * t285;
-        let t345 = c23_arm * c5_arm - t194 * s5_arm;
-        let t355 = parameters[45] * t296 + parameters[46] * t314
-            + parameters[47] * (t270 - t268) - parameters[48] * t301
-            - parameters[49] * t290;
-        let t361 = t355 - parameters[50] * t296 - parameters[51] * t169
-            + parameters[53] * t307;
-        let t373 = parameters[46] * (t268 - t292) - parameters[45] * t265
-            - parameters[47] * t280 + parameters[48] * t265 + parameters[49] * t302;
-        let t379 = t373 + parameters[50] * t183 + parameters[51] * t285
-            - parameters[52] * t307;
-        let t382 = t258 * t287 - t289 * t309 + t140 * t320 + t325 * t341 + t345 * t361
-            + t216 * t379;
-        let t388 = c6_arm * t261 - s6_arm * t269;
-        let t389 = t264 + joint_velocities[5];
-        let t390 = t388 * t389;
-        let t395 = s6_arm * t279 + c6_arm * t183 + joint_velocities[5] * t388;
-        let t396 = t390 + t395;
-        let t403 = s6_arm * t261 + c6_arm * t269;
-        let t405 = c6_arm * t279 - s6_arm * t183 - joint_velocities[5] * t403;
-        let t406 = t403 * t389;
-        let t407 = t405 - t406;
-        let t413 = parameters[65] * t396 + parameters[66] * t407 - parameters[67] * t271
-            + parameters[68] * t285;
-        let t418 = t388 * t403;
-        let t419 = t301 - t418;
-        let t421 = t403 * t403;
-        let t422 = t389 * t389;
-        let t426 = t390 - t395;
-        let t431 = c6_arm * t307 - s6_arm * t169;
-        let t433 = parameters[66] * t419 - parameters[65] * (t421 + t422)
-            + parameters[67] * t426 + parameters[68] * t431;
-        let t438 = t418 + t301;
-        let t440 = t388 * t388;
-        let t444 = t406 + t405;
-        let t449 = s6_arm * t307 + c6_arm * t169;
-        let t451 = parameters[65] * t438 + parameters[66] * (t440 + t422)
-            + parameters[67] * t444 + parameters[68] * t449;
-        let t454 = t258 * t413
-            - ((c6_arm * t289 + s6_arm * t140) * t433
-                + (s6_arm * t289 - c6_arm * t140) * t451);
-        let t467 = parameters[59] * t405 - parameters[60] * t396 - parameters[61] * t438
-            + parameters[62] * t406 + parameters[63] * (t421 - t422);
-        let t473 = t467 - parameters[64] * t406 + parameters[66] * t285
-            + parameters[67] * t449;
-        let t487 = parameters[59] * t390 + parameters[60] * t407
-            + parameters[61] * (t422 - t440) - parameters[62] * t395
-            - parameters[63] * t419;
-        let t493 = t487 - parameters[64] * t390 - parameters[65] * t285
-            + parameters[67] * t431;
-        let t505 = parameters[59] * t418 + parameters[60] * (t440 - t421)
-            + parameters[61] * t444 - parameters[62] * t418 + parameters[63] * t426;
-        let t511 = t505 - parameters[64] * t301 - parameters[65] * t449
-            - parameters[66] * t431;
-        let t513 = (t325 * c6_arm - t216 * s6_arm) * t473
-            - (t325 * s6_arm + t216 * c6_arm) * t493 + t345 * t511;
-        let t525 = parameters[6] * (t31 - t19) - parameters[5] * t14
-            + parameters[8] * t14 + parameters[11] * t88 - parameters[12] * t92;
-        let t531 = 0.45 * s3_arm;
-        let t539 = 0.45 * c3_arm;
-        let t546 = t531
-            * (parameters[24] * t72 - parameters[23] * (t77 + t79)
-                + parameters[26] * t119)
-            + t539
-                * (parameters[23] * t72 - parameters[24] * t208 + parameters[26] * t97);
-        let t556 = parameters[18] * (t105 - t77) - parameters[17] * t72
-            + parameters[20] * t72 + parameters[23] * t97 - parameters[24] * t119;
-        let t559 = t531 - 0.45;
-        let t560 = c4_arm * t559;
-        let t562 = s4_arm * t559;
-        let t573 = t560 * t191 + t562 * t171
-            + t539
-                * (parameters[37] * t196 + parameters[38] * t218 - parameters[39] * t208
-                    + parameters[40] * t210);
-        let t576 = s4_arm * t214 + c4_arm * t233;
-        let t581 = c5_arm * t560 + s5_arm * t539;
-        let t585 = c5_arm * t539 - s5_arm * t560;
-        let t590 = s4_arm * s5_arm;
-        let t592 = s4_arm * c5_arm;
-        let t596 = t590 * t361 - t592 * t341 + c4_arm * t379;
-        let t598 = t525 + joint_velocities[1] * parameters[14]
+                + parameters[26] * t73);
+        let t127 = 0.45 * (s23_arm - c2_arm);
+        let t128 = c4_arm * t127;
+        let t131 = c4_arm * t56 - s4_arm * t53;
+        let t134 = s4_arm * t56 + c4_arm * t53;
+        let t135 = t131 * t134;
+        let t136 = t135 + t57;
+        let t138 = t131 * t131;
+        let t139 = t52 + joint_velocities[3];
+        let t140 = t139 * t139;
+        let t141 = t138 + t140;
+        let t144 = t134 * t139;
+        let t147 = c4_arm * t54 - joint_velocities[3] * t134;
+        let t148 = t144 + t147;
+        let t152 = t107 + 0.45 * t61;
+        let t155 = 0.9 * (t10 + t54);
+        let t157 = s4_arm * t152 + c4_arm * t155;
+        let t159 = parameters[37] * t136 + parameters[38] * t141 + parameters[39] * t148
+            + parameters[40] * t157;
+        let t161 = s4_arm * t127;
+        let t162 = t57 - t135;
+        let t164 = t134 * t134;
+        let t168 = t131 * t139;
+        let t171 = s4_arm * t54 + joint_velocities[3] * t131;
+        let t172 = t168 - t171;
+        let t177 = c4_arm * t152 - s4_arm * t155;
+        let t179 = parameters[38] * t162 - parameters[37] * (t164 + t140)
+            + parameters[39] * t172 + parameters[40] * t177;
+        let t182 = s23_arm * c4_arm;
+        let t184 = t168 + t171;
+        let t193 = parameters[31] * t147 - parameters[32] * t184 - parameters[33] * t136
+            + parameters[34] * t144 + parameters[35] * (t164 - t140);
+        let t196 = t93 + t67;
+        let t198 = t85 - 0.45 * t196;
+        let t202 = t193 - parameters[36] * t144 + parameters[38] * t198
+            + parameters[39] * t157;
+        let t204 = s23_arm * s4_arm;
+        let t206 = t147 - t144;
+        let t215 = parameters[31] * t168 + parameters[32] * t206
+            + parameters[33] * (t140 - t138) - parameters[34] * t171
+            - parameters[35] * t162;
+        let t221 = t215 - parameters[36] * t168 - parameters[37] * t198
+            + parameters[39] * t177;
+        let t233 = parameters[31] * t135 + parameters[32] * (t138 - t164)
+            + parameters[33] * t148 - parameters[34] * t135 + parameters[35] * t172;
+        let t239 = t233 - parameters[36] * t57 - parameters[37] * t157
+            - parameters[38] * t177;
+        let t243 = t43 + t111 - t121 + t128 * t159 - t161 * t179 + t182 * t202
+            - t204 * t221 + c23_arm * t239;
+        let t246 = s5_arm * t161;
+        let t249 = c5_arm * t131 + s5_arm * t139;
+        let t252 = c5_arm * t139 - s5_arm * t131;
+        let t253 = t249 * t252;
+        let t254 = t253 + t171;
+        let t256 = t249 * t249;
+        let t257 = t134 + joint_velocities[4];
+        let t258 = t257 * t257;
+        let t259 = t256 + t258;
+        let t262 = t252 * t257;
+        let t267 = c5_arm * t147 - s5_arm * t57 + joint_velocities[4] * t252;
+        let t268 = t262 - t267;
+        let t273 = c5_arm * t198 - s5_arm * t177;
+        let t275 = parameters[51] * t254 - parameters[52] * t259 + parameters[53] * t268
+            + parameters[54] * t273;
+        let t278 = t253 - t171;
+        let t280 = t252 * t252;
+        let t284 = t249 * t257;
+        let t289 = s5_arm * t147 + c5_arm * t57 + joint_velocities[4] * t249;
+        let t290 = t284 - t289;
+        let t295 = c5_arm * t177 + s5_arm * t198;
+        let t297 = parameters[52] * t278 - parameters[51] * (t280 + t258)
+            + parameters[53] * t290 + parameters[54] * t295;
+        let t300 = t284 + t289;
+        let t302 = t262 + t267;
+        let t308 = parameters[51] * t300 + parameters[52] * t302 - parameters[53] * t141
+            + parameters[54] * t157;
+        let t313 = t182 * c5_arm + c23_arm * s5_arm;
+        let t323 = parameters[45] * t267 - parameters[46] * t300 + parameters[47] * t254
+            - parameters[48] * t262 + parameters[49] * (t280 - t258);
+        let t329 = t323 + parameters[50] * t262 + parameters[52] * t157
+            - parameters[53] * t273;
+        let t333 = c23_arm * c5_arm - t182 * s5_arm;
+        let t343 = parameters[45] * t284 + parameters[46] * t302
+            + parameters[47] * (t258 - t256) - parameters[48] * t289
+            - parameters[49] * t278;
+        let t349 = t343 - parameters[50] * t284 - parameters[51] * t157
+            + parameters[53] * t295;
+        let t361 = parameters[46] * (t256 - t280) - parameters[45] * t253
+            - parameters[47] * t268 + parameters[48] * t253 + parameters[49] * t290;
+        let t367 = t361 + parameters[50] * t171 + parameters[51] * t273
+            - parameters[52] * t295;
+        let t370 = t246 * t275 - c5_arm * t161 * t297 + t128 * t308 + t313 * t329
+            + t333 * t349 + t204 * t367;
+        let t376 = c6_arm * t249 - s6_arm * t257;
+        let t377 = t252 + joint_velocities[5];
+        let t378 = t376 * t377;
+        let t383 = s6_arm * t267 + c6_arm * t171 + joint_velocities[5] * t376;
+        let t384 = t378 + t383;
+        let t391 = s6_arm * t249 + c6_arm * t257;
+        let t393 = c6_arm * t267 - s6_arm * t171 - joint_velocities[5] * t391;
+        let t394 = t391 * t377;
+        let t395 = t393 - t394;
+        let t401 = parameters[65] * t384 + parameters[66] * t395 - parameters[67] * t259
+            + parameters[68] * t273;
+        let t403 = s4_arm * c5_arm;
+        let t406 = c6_arm * t403 + c4_arm * s6_arm;
+        let t408 = t376 * t391;
+        let t409 = t289 - t408;
+        let t411 = t391 * t391;
+        let t412 = t377 * t377;
+        let t416 = t378 - t383;
+        let t421 = c6_arm * t295 - s6_arm * t157;
+        let t423 = parameters[66] * t409 - parameters[65] * (t411 + t412)
+            + parameters[67] * t416 + parameters[68] * t421;
+        let t427 = s6_arm * t403 - c4_arm * c6_arm;
+        let t429 = t408 + t289;
+        let t431 = t376 * t376;
+        let t435 = t394 + t393;
+        let t440 = s6_arm * t295 + c6_arm * t157;
+        let t442 = parameters[65] * t429 + parameters[66] * (t431 + t412)
+            + parameters[67] * t435 + parameters[68] * t440;
+        let t458 = parameters[59] * t393 - parameters[60] * t384 - parameters[61] * t429
+            + parameters[62] * t394 + parameters[63] * (t411 - t412);
+        let t464 = t458 - parameters[64] * t394 + parameters[66] * t273
+            + parameters[67] * t440;
+        let t478 = parameters[59] * t378 + parameters[60] * t395
+            + parameters[61] * (t412 - t431) - parameters[62] * t383
+            - parameters[63] * t409;
+        let t484 = t478 - parameters[64] * t378 - parameters[65] * t273
+            + parameters[67] * t421;
+        let t496 = parameters[59] * t408 + parameters[60] * (t431 - t411)
+            + parameters[61] * t435 - parameters[62] * t408 + parameters[63] * t416;
+        let t502 = t496 - parameters[64] * t289 - parameters[65] * t440
+            - parameters[66] * t421;
+        let t504 = (t313 * c6_arm - t204 * s6_arm) * t464
+            - (t313 * s6_arm + t204 * c6_arm) * t484 + t333 * t502;
+        let t506 = t243 + t370 + t246 * t401 - (t127 * t406 * t423 + t127 * t427 * t442)
+            + t504;
+        let t516 = parameters[6] * (t31 - t19) - parameters[5] * t14
+            + parameters[8] * t14 + parameters[11] * t76 - parameters[12] * t80;
+        let t522 = 0.45 * s3_arm;
+        let t530 = 0.45 * c3_arm;
+        let t537 = t522
+            * (parameters[24] * t61 - parameters[23] * (t66 + t67)
+                + parameters[26] * t107)
+            + t530
+                * (parameters[23] * t61 - parameters[24] * t196 + parameters[26] * t85);
+        let t547 = parameters[18] * (t93 - t66) - parameters[17] * t61
+            + parameters[20] * t61 + parameters[23] * t85 - parameters[24] * t107;
+        let t550 = t522 - 0.45;
+        let t551 = c4_arm * t550;
+        let t553 = s4_arm * t550;
+        let t564 = t551 * t179 + t553 * t159
+            + t530
+                * (parameters[37] * t184 + parameters[38] * t206 - parameters[39] * t196
+                    + parameters[40] * t198);
+        let t567 = s4_arm * t202 + c4_arm * t221;
+        let t572 = c5_arm * t551 + s5_arm * t530;
+        let t576 = c5_arm * t530 - s5_arm * t551;
+        let t581 = s4_arm * s5_arm;
+        let t586 = t581 * t349 - t403 * t329 + c4_arm * t367;
+        let t588 = t516 + joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
-            + parameters[16] + t546 + t556 + t573 - t576 + t581 * t309 + t585 * t287
-            + t562 * t320 + t596;
-        let t609 = (c6_arm * t581 - s6_arm * t562) * t433
-            + (s6_arm * t581 + c6_arm * t562) * t451 + t585 * t413;
-        let t620 = (s6_arm * t592 - c4_arm * c6_arm) * t493
-            - (c6_arm * t592 + c4_arm * s6_arm) * t473 + t590 * t511;
-        let t628 = 0.45 * c4_arm;
-        let t630 = 0.45 * s4_arm;
-        let t634 = t556 + joint_velocities[2] * parameters[28]
+            + parameters[16] + t537 + t547 + t564 - t567 + t572 * t297 + t576 * t275
+            + t553 * t308 + t586;
+        let t599 = (c6_arm * t572 - s6_arm * t553) * t423
+            + (s6_arm * t572 + c6_arm * t553) * t442 + t576 * t401;
+        let t604 = t427 * t484 - t406 * t464 + t581 * t502;
+        let t612 = 0.45 * c4_arm;
+        let t614 = 0.45 * s4_arm;
+        let t618 = t547 + joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30] - (t628 * t191 + t630 * t171 + t576);
-        let t635 = s5_arm * t628;
-        let t637 = c5_arm * t628;
-        let t654 = (s6_arm * t630 - c6_arm * t637) * t433
-            - (s6_arm * t637 + c6_arm * t630) * t451 + t635 * t413;
-        let t673 = t251 + joint_velocities[3] * parameters[42]
+            + parameters[30] - (t612 * t179 + t614 * t159 + t567);
+        let t619 = s5_arm * t612;
+        let t621 = c5_arm * t612;
+        let t638 = (s6_arm * t614 - c6_arm * t621) * t423
+            - (s6_arm * t621 + c6_arm * t614) * t442 + t619 * t401;
+        let t657 = t239 + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + s5_arm * t341 + c5_arm * t361 + s5_arm * c6_arm * t473
-            - s5_arm * s6_arm * t493 + c5_arm * t511;
+            + parameters[44] + s5_arm * t329 + c5_arm * t349 + s5_arm * c6_arm * t464
+            - s5_arm * s6_arm * t484 + c5_arm * t502;
         [
-            t255 + t382 + t454 + t513, t598 + t609 + t620,
-            t634 + t635 * t287 - t637 * t309 - t630 * t320 + t596 + t654 + t620, t673,
-            t379 + joint_velocities[4] * parameters[56]
+            t506, t588 + t599 + t604,
+            t618 + t619 * t275 - t621 * t297 - t614 * t308 + t586 + t638 + t604, t657,
+            t367 + joint_velocities[4] * parameters[56]
                 + ::overact::math::signed(parameters[57], joint_velocities[4])
-                + parameters[58] - (s6_arm * t473 + c6_arm * t493),
-            t511 + joint_velocities[5] * parameters[70]
+                + parameters[58] - (s6_arm * t464 + c6_arm * t484),
+            t502 + joint_velocities[5] * parameters[70]
                 + ::overact::math::signed(parameters[71], joint_velocities[5])
                 + parameters[72],
         ]

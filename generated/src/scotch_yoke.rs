@@ -98,21 +98,21 @@ impl ScotchYoke {
     ///
     /// Output: 2.
     ///
-    /// 10 operations (5 additions, 5 multiplications, 0 divisions), 1 square roots, 0 trigonometric pairs, 0 signs, 12 intermediates.
+    /// 9 operations (5 additions, 4 multiplications, 0 divisions), 1 square roots, 0 trigonometric pairs, 0 signs, 11 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 1]) -> Result<[f64; 2], ::overact::Error> {
-        let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
+        let c_crank_left = 8.333333333333334 * pose[0];
+        let t2 = 1.0 - c_crank_left * c_crank_left;
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
         let s_crank_left = ::overact::math::sqrt(t2);
-        let c_crank_left = 8.333333333333334 * pose[0];
-        let t6 = 0.00000000000000006123233995736766 * s_crank_left - c_crank_left;
-        let t8 = 0.0000000000000005102694996447306 * pose[0] + s_crank_left;
+        let t5 = 0.00000000000000006123233995736766 * s_crank_left - c_crank_left;
+        let t7 = 0.0000000000000005102694996447306 * pose[0] + s_crank_left;
         Ok([
-            ::overact::math::atan2(t6, t8) + 1.5707963267948966,
-            ::overact::math::atan2(-t6, t8) - 1.5707963267948966,
+            ::overact::math::atan2(t5, t7) + 1.5707963267948966,
+            ::overact::math::atan2(-t5, t7) - 1.5707963267948966,
         ])
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -122,21 +122,21 @@ impl ScotchYoke {
     ///
     /// Output: 2.
     ///
-    /// 10 operations (5 additions, 5 multiplications, 0 divisions), 1 square roots, 0 trigonometric pairs, 0 signs, 12 intermediates.
+    /// 9 operations (5 additions, 4 multiplications, 0 divisions), 1 square roots, 0 trigonometric pairs, 0 signs, 11 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn actuator_positions(pose: &[f64; 1]) -> Result<[f64; 2], ::overact::Error> {
-        let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
+        let c_crank_left = 8.333333333333334 * pose[0];
+        let t2 = 1.0 - c_crank_left * c_crank_left;
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
         let s_crank_left = ::overact::math::sqrt(t2);
-        let c_crank_left = 8.333333333333334 * pose[0];
-        let t6 = 0.00000000000000006123233995736766 * s_crank_left - c_crank_left;
-        let t8 = 0.0000000000000005102694996447306 * pose[0] + s_crank_left;
+        let t5 = 0.00000000000000006123233995736766 * s_crank_left - c_crank_left;
+        let t7 = 0.0000000000000005102694996447306 * pose[0] + s_crank_left;
         Ok([
-            ::overact::math::atan2(t6, t8) + 1.5707963267948966,
-            ::overact::math::atan2(-t6, t8) - 1.5707963267948966,
+            ::overact::math::atan2(t5, t7) + 1.5707963267948966,
+            ::overact::math::atan2(-t5, t7) - 1.5707963267948966,
         ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -489,7 +489,7 @@ impl ScotchYoke {
     /// Output: 1 x 11.
     /// Columns: `PARAMETERS`.
     ///
-    /// 23 operations (6 additions, 16 multiplications, 1 divisions), 1 square roots, 0 trigonometric pairs, 1 signs, 20 intermediates.
+    /// 19 operations (6 additions, 12 multiplications, 1 divisions), 1 square roots, 0 trigonometric pairs, 1 signs, 16 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -506,25 +506,22 @@ impl ScotchYoke {
         let s_crank_left = ::overact::math::sqrt(t2);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
-        let t5 = 0.0072 * t2;
-        let t8 = minus_gcrank_vx_left * actuator_velocities[1]
-            - minus_gcrank_vx_left * actuator_velocities[0];
-        let minus_rate_crank_left = minus_gcrank_vx_left * (t8 * t5);
-        let t12 = pose[0] * (minus_rate_crank_left * minus_rate_crank_left);
-        let minus_rate_dot_crank_left = minus_gcrank_vx_left * t12;
-        let t19 = t5
+        let minus_rate_crank_left = 0.5
+            * (actuator_velocities[1] - actuator_velocities[0]);
+        let t9 = pose[0] * (minus_rate_crank_left * minus_rate_crank_left);
+        let minus_rate_dot_crank_left = minus_gcrank_vx_left * t9;
+        let t15 = 0.0072 * t2
             * (minus_gcrank_vx_left
-                * (actuator_accelerations[1] - minus_rate_dot_crank_left)
-                - minus_gcrank_vx_left
-                    * (actuator_accelerations[0] + minus_rate_dot_crank_left));
-        let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t19 + t12);
-        let t22 = minus_gcrank_vx_left * minus_rate_dot_crank_left_2;
-        let t23 = 0.5 * t8;
-        let t24 = ::overact::math::signed(minus_gcrank_vx_left, minus_rate_crank_left);
+                * (actuator_accelerations[1] - minus_rate_dot_crank_left
+                    - (actuator_accelerations[0] + minus_rate_dot_crank_left)));
+        let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t15 + t9);
+        let t18 = minus_gcrank_vx_left * minus_rate_dot_crank_left_2;
+        let t19 = minus_gcrank_vx_left * minus_rate_crank_left;
+        let t20 = ::overact::math::signed(minus_gcrank_vx_left, minus_rate_crank_left);
         Ok([
             [
-                t22, t22, t23, t24, -minus_gcrank_vx_left, t22, t22, t23, t24, minus_gcrank_vx_left,
-                t19,
+                t18, t18, t19, t20, -minus_gcrank_vx_left, t18, t18, t19, t20, minus_gcrank_vx_left,
+                t15,
             ],
         ])
     }
@@ -751,7 +748,7 @@ impl ScotchYoke {
     /// Output: 1 x 5.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 23 operations (6 additions, 16 multiplications, 1 divisions), 1 square roots, 0 trigonometric pairs, 1 signs, 20 intermediates.
+    /// 19 operations (6 additions, 12 multiplications, 1 divisions), 1 square roots, 0 trigonometric pairs, 1 signs, 16 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -765,24 +762,22 @@ impl ScotchYoke {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
-        let t3 = 0.0072 * t2;
         let s_crank_left = ::overact::math::sqrt(t2);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
-        let t8 = minus_gcrank_vx_left * actuator_velocities[1]
-            - minus_gcrank_vx_left * actuator_velocities[0];
-        let minus_rate_crank_left = minus_gcrank_vx_left * (t8 * t3);
-        let t12 = pose[0] * (minus_rate_crank_left * minus_rate_crank_left);
-        let minus_rate_dot_crank_left = minus_gcrank_vx_left * t12;
-        let t19 = t3
+        let minus_rate_crank_left = 0.5
+            * (actuator_velocities[1] - actuator_velocities[0]);
+        let t9 = pose[0] * (minus_rate_crank_left * minus_rate_crank_left);
+        let minus_rate_dot_crank_left = minus_gcrank_vx_left * t9;
+        let t15 = 0.0072 * t2
             * (minus_gcrank_vx_left
-                * (actuator_accelerations[1] - minus_rate_dot_crank_left)
-                - minus_gcrank_vx_left
-                    * (actuator_accelerations[0] + minus_rate_dot_crank_left));
-        let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t19 + t12);
+                * (actuator_accelerations[1] - minus_rate_dot_crank_left
+                    - (actuator_accelerations[0] + minus_rate_dot_crank_left)));
+        let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t15 + t9);
         Ok([
             [
-                t19, minus_gcrank_vx_left * minus_rate_dot_crank_left_2, 0.5 * t8,
+                t15, minus_gcrank_vx_left * minus_rate_dot_crank_left_2,
+                minus_gcrank_vx_left * minus_rate_crank_left,
                 ::overact::math::signed(minus_gcrank_vx_left, minus_rate_crank_left),
                 -minus_gcrank_vx_left,
             ],

@@ -115,7 +115,7 @@ impl Spherical3Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999995209), ("zz_distal_leg2", 0.9999999999886359),
+                    ("zz_distal_leg1", 0.9999999999995214), ("zz_distal_leg2", 0.9999999999886359),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -124,7 +124,7 @@ impl Spherical3Rrr {
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg2", 0.9999999999962862), ("zz_distal_leg3", 0.99999999999494),
+                    ("zz_distal_leg2", 0.9999999999962865), ("zz_distal_leg3", 0.9999999999949399),
                 ],
             ),
             BaseParameter::new("yz_platform", "yz_platform", &[]),
@@ -132,7 +132,7 @@ impl Spherical3Rrr {
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999914264), ("zz_distal_leg3", 0.9999999999967922),
+                    ("zz_distal_leg1", 0.9999999999914265), ("zz_distal_leg3", 0.9999999999967922),
                 ],
             ),
             BaseParameter::new(
@@ -143,7 +143,7 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
-                &[("my_distal_leg1", -1.0000000000095048)],
+                &[("my_distal_leg1", -1.0000000000095053)],
             ),
             BaseParameter::new(
                 "mz_platformR",
@@ -189,7 +189,7 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "xx_distal_leg1R",
                 "xx_distal_leg1",
-                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999948109)],
+                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999948115)],
             ),
             BaseParameter::new(
                 "xx_distal_leg2R",
@@ -199,7 +199,7 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "xx_distal_leg3R",
                 "xx_distal_leg3",
-                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999939143)],
+                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.999999999993914)],
             ),
             BaseParameter::new("xy_distal_leg1", "xy_distal_leg1", &[]),
             BaseParameter::new("xy_distal_leg2", "xy_distal_leg2", &[]),
@@ -222,59 +222,56 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 53 operations (14 additions, 30 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 59 intermediates.
+    /// 41 operations (14 additions, 15 multiplications, 12 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 47 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 4]) -> Result<[f64; 9], ::overact::Error> {
-        let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[2] * t0;
-        let t7 = pose[0] * t3;
-        let minus_s_distal_leg1 = t6 - t7;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = pose[2] * t2;
+        let t6 = 2.0 * pose[3];
+        let t7 = pose[0] * t6;
+        let minus_s_distal_leg1 = t5 - t7;
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t25 = pose[3] * t0;
-        let t26 = pose[0] * t14;
-        let t27 = t25 + t26;
-        let s_wrist_leg1 = t27 / c_distal_leg1;
-        let t29 = pose[2] * t14;
-        let t31 = 1.0 - t29 - t4;
-        let c_wrist_leg1 = t31 / c_distal_leg1;
-        let t34 = t2 - t29;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t37 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t37, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t37);
+        let s_proximal_leg1 = t4 / c_distal_leg1;
+        let t14 = 1.0 - pose[1] * t2;
+        let t15 = pose[3] * t6;
+        let t16 = t14 - t15;
+        let c_proximal_leg1 = t16 / c_distal_leg1;
+        let t21 = pose[3] * t2;
+        let t22 = pose[0] * t0;
+        let t23 = t21 + t22;
+        let s_wrist_leg1 = t23 / c_distal_leg1;
+        let t25 = pose[2] * t0;
+        let t27 = 1.0 - t25 - t15;
+        let c_wrist_leg1 = t27 / c_distal_leg1;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t32 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t32, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t40 = 1.0 / (t34 * c_distal_leg2);
-        let s_proximal_leg2 = t40 * (t27 * t34);
-        let c_proximal_leg2 = t40 * (t34 * t34);
-        let t48 = t6 + t7;
-        let s_wrist_leg2 = t48 / c_distal_leg2;
-        let c_wrist_leg2 = t5 / c_distal_leg2;
-        let minus_s_distal_leg3 = t25 - t26;
-        let t54 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t54, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t54);
+        let s_proximal_leg2 = t23 / c_distal_leg2;
+        let t35 = t14 - t25;
+        let c_proximal_leg2 = t35 / c_distal_leg2;
+        let t40 = t5 + t7;
+        let s_wrist_leg2 = t40 / c_distal_leg2;
+        let c_wrist_leg2 = t16 / c_distal_leg2;
+        let minus_s_distal_leg3 = t21 - t22;
+        let t46 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t46, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t57 = 1.0 / (t31 * c_distal_leg3);
-        let s_proximal_leg3 = t57 * (t31 * t48);
-        let c_proximal_leg3 = t57 * (t31 * t31);
-        let s_wrist_leg3 = t17 / c_distal_leg3;
-        let c_wrist_leg3 = t34 / c_distal_leg3;
+        let s_proximal_leg3 = t40 / c_distal_leg3;
+        let c_proximal_leg3 = t27 / c_distal_leg3;
+        let s_wrist_leg3 = t4 / c_distal_leg3;
+        let c_wrist_leg3 = t35 / c_distal_leg3;
         Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(-minus_s_distal_leg1, c_distal_leg1),
@@ -348,59 +345,56 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 56 operations (14 additions, 36 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 53 intermediates.
+    /// 47 operations (14 additions, 30 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 44 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[2];
-        let t4 = pose[2] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[3] * t3;
-        let t7 = pose[0] * t0;
-        let minus_s_distal_leg2 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t10, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t5 = pose[3] * t2;
+        let t6 = pose[0] * t0;
+        let minus_s_distal_leg2 = t5 - t6;
+        let t9 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t9, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let t14 = pose[3] * t0;
-        let t15 = pose[0] * t3;
-        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
-        let t19 = minus_s_distal_leg2 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
-        let t22 = 2.0 * pose[3];
-        let t23 = pose[3] * t22;
-        let t24 = 1.0 - t4 - t23;
-        let minus_s_distal_leg3 = t14 - t15;
-        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t27, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t27);
+        let t11 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = (t1 + t3) * t11;
+        let t13 = minus_s_distal_leg2 * t11;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t13;
+        let t15 = pose[2] * t2;
+        let t17 = 2.0 * pose[3];
+        let t18 = pose[3] * t17;
+        let minus_s_distal_leg3 = t1 - t3;
+        let t22 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t22, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t30 = 1.0 / (t24 * c_distal_leg3);
-        let c_proximal_leg3 = t30 * (t24 * t24);
-        let t33 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t33;
-        let t35 = t2 - t23;
-        let t36 = pose[2] * t0;
-        let t37 = pose[0] * t22;
-        let minus_s_distal_leg1 = t36 - t37;
-        let t40 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t40, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t40);
+        let t24 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = (1.0 - t15 - t18) * t24;
+        let t26 = minus_s_distal_leg3 * t24;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t26;
+        let t29 = 1.0 - pose[1] * t0;
+        let t31 = pose[2] * t0;
+        let t32 = pose[0] * t17;
+        let minus_s_distal_leg1 = t31 - t32;
+        let t35 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t35, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t43 = 1.0 / (t35 * c_distal_leg1);
-        let c_proximal_leg1 = t43 * (t35 * t35);
-        let t46 = minus_s_distal_leg1 / c_distal_leg1;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t46;
-        let s_proximal_leg3 = t30 * (t24 * (t36 + t37));
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t33;
-        let s_proximal_leg1 = t43 * (t35 * (t6 + t7));
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t46;
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
+        let t37 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = (t29 - t18) * t37;
+        let t39 = minus_s_distal_leg1 * t37;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t39;
+        let s_proximal_leg3 = t24 * (t31 + t32);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t26;
+        let s_proximal_leg1 = t37 * (t5 + t6);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t39;
+        let c_proximal_leg2 = (t29 - t15) * t11;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
         Ok([
             [1.0, -minus_gproximal_wy_leg1, -minus_gproximal_wz_leg1],
             [-minus_gproximal_wx_leg2, 1.0, -minus_gproximal_wz_leg2],
@@ -456,99 +450,96 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 133 operations (48 additions, 76 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 127 intermediates.
+    /// 124 operations (48 additions, 70 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 118 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[2];
-        let t4 = pose[2] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[3] * t3;
-        let t7 = pose[0] * t0;
-        let minus_s_distal_leg2 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t10, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t5 = pose[3] * t2;
+        let t6 = pose[0] * t0;
+        let minus_s_distal_leg2 = t5 - t6;
+        let t9 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t9, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let t14 = pose[3] * t0;
-        let t15 = pose[0] * t3;
-        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
-        let t19 = minus_s_distal_leg2 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
-        let t24 = 2.0 * pose[3];
-        let t25 = pose[3] * t24;
-        let t26 = 1.0 - t4 - t25;
-        let minus_s_distal_leg3 = t14 - t15;
-        let t29 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t29, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t29);
+        let t11 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = (t1 + t3) * t11;
+        let t13 = minus_s_distal_leg2 * t11;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t13;
+        let t17 = pose[2] * t2;
+        let t19 = 2.0 * pose[3];
+        let t20 = pose[3] * t19;
+        let minus_s_distal_leg3 = t1 - t3;
+        let t24 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t24, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t32 = 1.0 / (t26 * c_distal_leg3);
-        let c_proximal_leg3 = t32 * (t26 * t26);
-        let t35 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
-        let t38 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t26 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = (1.0 - t17 - t20) * t26;
+        let t28 = minus_s_distal_leg3 * t26;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t28;
+        let t31 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t38, 1.0, "actuators")?;
-        let t39 = 1.0 / t38;
-        let t40 = pose[2] * t0;
-        let t41 = pose[0] * t24;
-        let s_proximal_leg3 = t32 * (t26 * (t40 + t41));
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
-        let t47 = t2 - t25;
-        let minus_s_distal_leg1 = t40 - t41;
-        let t50 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t50, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t50);
+        ::overact::guard::platform(t31, 1.0, "actuators")?;
+        let t32 = 1.0 / t31;
+        let t33 = pose[2] * t0;
+        let t34 = pose[0] * t19;
+        let s_proximal_leg3 = t26 * (t33 + t34);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t28;
+        let t40 = 1.0 - pose[1] * t0;
+        let minus_s_distal_leg1 = t33 - t34;
+        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t44, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t53 = 1.0 / (t47 * c_distal_leg1);
-        let c_proximal_leg1 = t53 * (t47 * t47);
-        let t56 = minus_s_distal_leg1 / c_distal_leg1;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t56;
-        let t59 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t46 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = (t40 - t20) * t46;
+        let t48 = minus_s_distal_leg1 * t46;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t48;
+        let t51 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t60 = t59 * t39;
-        let t66 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t59 * t60;
-        ::overact::guard::platform(t66, 1.0, "actuators")?;
-        let t67 = 1.0 / t66;
-        let t68 = minus_gproximal_wy_leg1 + t60;
-        let s_proximal_leg1 = t53 * (t47 * (t6 + t7));
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t56;
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
-        let t82 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t52 = t51 * t32;
+        let t58 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t51 * t52;
+        ::overact::guard::platform(t58, 1.0, "actuators")?;
+        let t59 = 1.0 / t58;
+        let t60 = minus_gproximal_wy_leg1 + t52;
+        let s_proximal_leg1 = t46 * (t5 + t6);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t48;
+        let c_proximal_leg2 = (t40 - t17) * t11;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
+        let t73 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t83 = t82 * t39;
-        let t85 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t59 * t83;
-        let t86 = t85 * t67;
-        let t94 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t82 * t83
-            - t85 * t86;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t99 = t95 * (t86 * t68 - (minus_gproximal_wz_leg1 + t83));
-        let t101 = t67 * t68 + t86 * t99;
-        let t108 = 1.0 + minus_gproximal_wx_leg2 * t60;
-        let t114 = t95
-            * (minus_gproximal_wx_leg2 * t83 - minus_gproximal_wz_leg2 - t86 * t108);
-        let t116 = t67 * t108 - t86 * t114;
-        let t123 = minus_gproximal_wx_leg3 * t60 - minus_gproximal_wy_leg3;
-        let t129 = t95 * (1.0 + minus_gproximal_wx_leg3 * t83 - t86 * t123);
-        let t131 = t67 * t123 - t86 * t129;
+        let t74 = t73 * t32;
+        let t76 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t51 * t74;
+        let t77 = t76 * t59;
+        let t85 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t73 * t74
+            - t76 * t77;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        let t86 = 1.0 / t85;
+        let t90 = t86 * (t77 * t60 - (minus_gproximal_wz_leg1 + t74));
+        let t92 = t59 * t60 + t77 * t90;
+        let t99 = 1.0 + minus_gproximal_wx_leg2 * t52;
+        let t105 = t86
+            * (minus_gproximal_wx_leg2 * t74 - minus_gproximal_wz_leg2 - t77 * t99);
+        let t107 = t59 * t99 - t77 * t105;
+        let t114 = minus_gproximal_wx_leg3 * t52 - minus_gproximal_wy_leg3;
+        let t120 = t86 * (1.0 + minus_gproximal_wx_leg3 * t74 - t77 * t114);
+        let t122 = t59 * t114 - t77 * t120;
         Ok([
             [
-                t39 + t60 * t101 - t83 * t99,
-                -(minus_gproximal_wx_leg2 * t39 + t60 * t116 + t83 * t114),
-                -(minus_gproximal_wx_leg3 * t39 + t60 * t131 + t83 * t129),
+                t32 + t52 * t92 - t74 * t90,
+                -(minus_gproximal_wx_leg2 * t32 + t52 * t107 + t74 * t105),
+                -(minus_gproximal_wx_leg3 * t32 + t52 * t122 + t74 * t120),
             ],
-            [-t101, t116, t131],
-            [t99, t114, t129],
+            [-t92, t107, t122],
+            [t90, t105, t120],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -630,47 +621,34 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 15 operations (0 additions, 12 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 18 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
+    /// 6 operations (0 additions, 6 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 9 intermediates.
+    #[must_use]
     pub fn closure_platform_jacobian_from_joints(
         _pose: &[f64; 4],
         joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let [(c_distal_leg1, minus_s_distal_leg1), (c_distal_leg2, minus_s_distal_leg2),
+    ) -> [[f64; 3]; 3] {
+        let [(c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
-        (c_distal_leg3, minus_s_distal_leg3),
+        (c_distal_leg2, minus_s_distal_leg2),
         (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3),
         (minus_s_proximal_leg1, minus_c_proximal_leg1)] = ::overact::math::sin_cos_all([
-            joints[1], joints[4], joints[3], joints[7], joints[6], joints[0],
+            joints[1], joints[3], joints[4], joints[6], joints[7], joints[0],
         ]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t6 = c_distal_leg2 / minus_s_distal_leg2;
-        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t6;
-        let t13 = c_distal_leg3 / minus_s_distal_leg3;
-        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t13;
-        let t18 = c_distal_leg1 / minus_s_distal_leg1;
-        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t18;
-        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t13;
-        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t18;
-        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t6;
-        Ok([
+        [
             [
-                -minus_s_distal_leg1, -(minus_s_distal_leg1 * gproximal_wy_leg1),
-                -(minus_s_distal_leg1 * gproximal_wz_leg1),
+                -minus_s_distal_leg1, -(minus_c_proximal_leg1 * c_distal_leg1),
+                -(c_distal_leg1 * minus_s_proximal_leg1),
             ],
             [
-                -(minus_s_distal_leg2 * gproximal_wx_leg2), -minus_s_distal_leg2,
-                -(minus_s_distal_leg2 * gproximal_wz_leg2),
+                -(minus_s_proximal_leg2 * c_distal_leg2), -minus_s_distal_leg2,
+                -(c_distal_leg2 * minus_c_proximal_leg2),
             ],
             [
-                -(minus_s_distal_leg3 * gproximal_wx_leg3),
-                -(minus_s_distal_leg3 * gproximal_wy_leg3), -minus_s_distal_leg3,
+                -(minus_c_proximal_leg3 * c_distal_leg3), -(c_distal_leg3 * minus_s_proximal_leg3),
+                -minus_s_distal_leg3,
             ],
-        ])
+        ]
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
     ///
@@ -701,7 +679,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 80 operations (23 additions, 51 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 74 intermediates.
+    /// 65 operations (23 additions, 39 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 59 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -719,52 +697,46 @@ impl Spherical3Rrr {
         let c_distal_leg1 = ::overact::math::sqrt(t6);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t8 = 1.0 / c_distal_leg1;
-        let t11 = 1.0 - pose[1] * t0;
-        let t12 = pose[3] * t2;
-        let t13 = t11 - t12;
-        let t15 = 1.0 / (t13 * c_distal_leg1);
-        let c_proximal_leg1 = t15 * (t13 * t13);
-        let t19 = 2.0 * pose[2];
-        let t20 = pose[3] * t19;
-        let t21 = pose[0] * t0;
-        let s_proximal_leg1 = t15 * (t13 * (t20 + t21));
-        let t26 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
-        let rate_proximal_leg1 = twist[0] - minus_s_distal_leg1 * t8 * t26;
+        let t10 = 1.0 - pose[1] * t0;
+        let t11 = pose[3] * t2;
+        let c_proximal_leg1 = t8 * (t10 - t11);
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let s_proximal_leg1 = t8 * (t16 + t17);
+        let rate_wrist_leg1 = t8
+            * (c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2]);
+        let rate_proximal_leg1 = twist[0] - minus_s_distal_leg1 * rate_wrist_leg1;
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let rate_wrist_leg1 = t8 * t26;
-        let minus_s_distal_leg2 = t20 - t21;
-        let t35 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t35, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t35);
+        let minus_s_distal_leg2 = t16 - t17;
+        let t30 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t30, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t37 = 1.0 / c_distal_leg2;
-        let t39 = pose[2] * t19;
-        let t40 = t11 - t39;
-        let t42 = 1.0 / (t40 * c_distal_leg2);
-        let t43 = pose[3] * t0;
-        let t44 = pose[0] * t19;
-        let s_proximal_leg2 = t42 * ((t43 + t44) * t40);
-        let c_proximal_leg2 = t42 * (t40 * t40);
-        let t52 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
-        let rate_proximal_leg2 = twist[1] - minus_s_distal_leg2 * t37 * t52;
+        let t32 = 1.0 / c_distal_leg2;
+        let t33 = pose[3] * t0;
+        let t34 = pose[0] * t15;
+        let s_proximal_leg2 = t32 * (t33 + t34);
+        let t38 = pose[2] * t15;
+        let c_proximal_leg2 = t32 * (t10 - t38);
+        let rate_wrist_leg2 = t32
+            * (s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2]);
+        let rate_proximal_leg2 = twist[1] - minus_s_distal_leg2 * rate_wrist_leg2;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let rate_wrist_leg2 = t37 * t52;
-        let minus_s_distal_leg3 = t43 - t44;
-        let t61 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t61, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t61);
+        let minus_s_distal_leg3 = t33 - t34;
+        let t51 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t51, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t63 = 1.0 / c_distal_leg3;
-        let t66 = 1.0 - t39 - t12;
-        let t68 = 1.0 / (t66 * c_distal_leg3);
-        let c_proximal_leg3 = t68 * (t66 * t66);
-        let s_proximal_leg3 = t68 * (t66 * (t1 + t3));
-        let t76 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
-        let rate_proximal_leg3 = twist[2] - minus_s_distal_leg3 * t63 * t76;
+        let t53 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t53 * (1.0 - t38 - t11);
+        let s_proximal_leg3 = t53 * (t1 + t3);
+        let rate_wrist_leg3 = t53
+            * (c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1]);
+        let rate_proximal_leg3 = twist[2] - minus_s_distal_leg3 * rate_wrist_leg3;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let rate_wrist_leg3 = t63 * t76;
         Ok([
             rate_proximal_leg1, -minus_rate_distal_leg1, rate_wrist_leg1, rate_proximal_leg2,
             -minus_rate_distal_leg2, rate_wrist_leg2, rate_proximal_leg3, rate_distal_leg3,
@@ -780,7 +752,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 9.
     ///
-    /// 128 operations (44 additions, 78 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 122 intermediates.
+    /// 116 operations (44 additions, 69 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 110 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -793,7 +765,6 @@ impl Spherical3Rrr {
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
         let t4 = pose[3] * t3;
-        let t5 = t2 - t4;
         let t6 = pose[2] * t0;
         let t7 = pose[0] * t3;
         let minus_s_distal_leg1 = t6 - t7;
@@ -801,74 +772,69 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let s_proximal_leg1 = t13 * (t5 * (t18 + t19));
-        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t12 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = (t2 - t4) * t12;
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let s_proximal_leg1 = (t16 + t17) * t12;
+        let t21 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t30 = 1.0 / c_distal_leg1;
-        let t31 = minus_s_distal_leg1 * t30;
-        let t35 = t31 * t24;
-        let rate_proximal_leg1 = twist[0] - t35;
-        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
-            - t31 * t40;
+        let t27 = minus_s_distal_leg1 * t12;
+        let t31 = t27 * t21;
+        let rate_proximal_leg1 = twist[0] - t31;
+        let t36 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t31 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t21 * minus_rate_distal_leg1
+            - t27 * t36;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
-        let rate_dot_wrist_leg1 = t30 * t40;
-        let t49 = pose[2] * t17;
-        let t50 = t2 - t49;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t53 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t53, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t53);
+            - c_proximal_leg1 * acceleration[2] + t21 * rate_proximal_leg1;
+        let rate_dot_wrist_leg1 = t12 * t36;
+        let t45 = pose[3] * t0;
+        let t46 = pose[0] * t15;
+        let minus_s_distal_leg2 = t16 - t17;
+        let t50 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t50, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t50);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t56 = 1.0 / (t50 * c_distal_leg2);
-        let t57 = pose[3] * t0;
-        let t58 = pose[0] * t17;
-        let s_proximal_leg2 = t56 * ((t57 + t58) * t50);
-        let c_proximal_leg2 = t56 * (t50 * t50);
-        let t66 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t52 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = (t45 + t46) * t52;
+        let t55 = pose[2] * t15;
+        let c_proximal_leg2 = (t2 - t55) * t52;
+        let t59 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t72 = 1.0 / c_distal_leg2;
-        let t73 = minus_s_distal_leg2 * t72;
-        let t77 = t73 * t66;
-        let rate_proximal_leg2 = twist[1] - t77;
-        let t82 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t77 - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t66 * minus_rate_distal_leg2
-            - t73 * t82;
+        let t65 = minus_s_distal_leg2 * t52;
+        let t69 = t65 * t59;
+        let rate_proximal_leg2 = twist[1] - t69;
+        let t74 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t69 - minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t59 * minus_rate_distal_leg2
+            - t65 * t74;
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t66 * rate_proximal_leg2;
-        let rate_dot_wrist_leg2 = t72 * t82;
-        let t92 = 1.0 - t49 - t4;
-        let minus_s_distal_leg3 = t57 - t58;
-        let t95 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t95, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t95);
+            - c_proximal_leg2 * acceleration[0] + t59 * rate_proximal_leg2;
+        let rate_dot_wrist_leg2 = t52 * t74;
+        let minus_s_distal_leg3 = t45 - t46;
+        let t87 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t87, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t87);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t98 = 1.0 / (t92 * c_distal_leg3);
-        let c_proximal_leg3 = t98 * (t92 * t92);
-        let s_proximal_leg3 = t98 * (t92 * (t6 + t7));
-        let t106 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t89 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = (1.0 - t55 - t4) * t89;
+        let s_proximal_leg3 = (t6 + t7) * t89;
+        let t95 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t112 = 1.0 / c_distal_leg3;
-        let t113 = minus_s_distal_leg3 * t112;
-        let t117 = t113 * t106;
-        let rate_proximal_leg3 = twist[2] - t117;
-        let t122 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t117;
-        let rate_dot_proximal_leg3 = acceleration[2] + t106 * rate_distal_leg3
-            - t113 * t122;
+        let t101 = minus_s_distal_leg3 * t89;
+        let t105 = t101 * t95;
+        let rate_proximal_leg3 = twist[2] - t105;
+        let t110 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
+            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t105;
+        let rate_dot_proximal_leg3 = acceleration[2] + t95 * rate_distal_leg3
+            - t101 * t110;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t106 * rate_proximal_leg3;
-        let rate_dot_wrist_leg3 = t112 * t122;
+            - s_proximal_leg3 * acceleration[0] - t95 * rate_proximal_leg3;
+        let rate_dot_wrist_leg3 = t89 * t110;
         Ok([
             rate_dot_proximal_leg1, -minus_rate_dot_distal_leg1, rate_dot_wrist_leg1,
             rate_dot_proximal_leg2, -minus_rate_dot_distal_leg2, rate_dot_wrist_leg2,
@@ -883,7 +849,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 117 operations (42 additions, 66 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 117 intermediates.
+    /// 108 operations (42 additions, 60 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 108 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -892,86 +858,83 @@ impl Spherical3Rrr {
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[2];
-        let t4 = pose[2] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[3] * t3;
-        let t7 = pose[0] * t0;
-        let minus_s_distal_leg2 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t10, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t5 = pose[3] * t2;
+        let t6 = pose[0] * t0;
+        let minus_s_distal_leg2 = t5 - t6;
+        let t9 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t9, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let t14 = pose[3] * t0;
-        let t15 = pose[0] * t3;
-        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
-        let t19 = minus_s_distal_leg2 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
-        let t24 = 2.0 * pose[3];
-        let t25 = pose[3] * t24;
-        let t26 = 1.0 - t4 - t25;
-        let minus_s_distal_leg3 = t14 - t15;
-        let t29 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t29, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t29);
+        let t11 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = (t1 + t3) * t11;
+        let t13 = minus_s_distal_leg2 * t11;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t13;
+        let t17 = pose[2] * t2;
+        let t19 = 2.0 * pose[3];
+        let t20 = pose[3] * t19;
+        let minus_s_distal_leg3 = t1 - t3;
+        let t24 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t24, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t32 = 1.0 / (t26 * c_distal_leg3);
-        let c_proximal_leg3 = t32 * (t26 * t26);
-        let t35 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
-        let t38 = actuator_velocities[0]
+        let t26 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = (1.0 - t17 - t20) * t26;
+        let t28 = minus_s_distal_leg3 * t26;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t28;
+        let t31 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t42 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t35 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t42, 1.0, "actuators")?;
-        let t43 = 1.0 / t42;
-        let t45 = pose[2] * t0;
-        let t46 = pose[0] * t24;
-        let s_proximal_leg3 = t32 * (t26 * (t45 + t46));
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
-        let t52 = t2 - t25;
-        let minus_s_distal_leg1 = t45 - t46;
-        let t55 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t55, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t55);
+        ::overact::guard::platform(t35, 1.0, "actuators")?;
+        let t36 = 1.0 / t35;
+        let t38 = pose[2] * t0;
+        let t39 = pose[0] * t19;
+        let s_proximal_leg3 = t26 * (t38 + t39);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t28;
+        let t45 = 1.0 - pose[1] * t0;
+        let minus_s_distal_leg1 = t38 - t39;
+        let t49 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t49, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t49);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t58 = 1.0 / (t52 * c_distal_leg1);
-        let c_proximal_leg1 = t58 * (t52 * t52);
-        let t61 = minus_s_distal_leg1 / c_distal_leg1;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t61;
-        let t64 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t51 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = (t45 - t20) * t51;
+        let t53 = minus_s_distal_leg1 * t51;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t53;
+        let t56 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t65 = t64 * t43;
-        let t71 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t64 * t65;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        let t72 = 1.0 / t71;
-        let t78 = actuator_velocities[1]
+        let t57 = t56 * t36;
+        let t63 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t56 * t57;
+        ::overact::guard::platform(t63, 1.0, "actuators")?;
+        let t64 = 1.0 / t63;
+        let t70 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t38 * t65;
-        let s_proximal_leg1 = t58 * (t52 * (t6 + t7));
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t61;
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
-        let t92 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t31 * t57;
+        let s_proximal_leg1 = t51 * (t5 + t6);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t53;
+        let c_proximal_leg2 = (t45 - t17) * t11;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
+        let t83 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t93 = t92 * t43;
-        let t95 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t64 * t93;
-        let t96 = t95 * t72;
-        let t104 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t92 * t93
-            - t95 * t96;
-        ::overact::guard::platform(t104, 1.0, "actuators")?;
-        let t113 = (actuator_velocities[2]
+        let t84 = t83 * t36;
+        let t86 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t56 * t84;
+        let t87 = t86 * t64;
+        let t103 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t83 * t84
+            - t86 * t87;
+        ::overact::guard::platform(t103, 1.0, "actuators")?;
+        let t104 = (actuator_velocities[2]
             - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t38 * t93
-            - t96 * t78) / t104;
-        let t115 = t72 * t78 - t96 * t113;
-        Ok([t38 * t43 - t65 * t115 - t93 * t113, t115, t113])
+                + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t31 * t84
+            - t87 * t70) / t103;
+        let t106 = t64 * t70 - t87 * t104;
+        Ok([t31 * t36 - t57 * t106 - t84 * t104, t106, t104])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -982,7 +945,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 162 operations (60 additions, 93 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 162 intermediates.
+    /// 152 operations (60 additions, 84 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 152 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1001,101 +964,96 @@ impl Spherical3Rrr {
         let c_distal_leg1 = ::overact::math::sqrt(t6);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t8 = minus_s_distal_leg1 / c_distal_leg1;
-        let t10 = 1.0 - pose[1] * t0;
-        let t11 = pose[3] * t2;
-        let t12 = t10 - t11;
-        let t14 = 1.0 / (t12 * c_distal_leg1);
-        let t15 = 2.0 * pose[2];
-        let t16 = pose[3] * t15;
-        let t17 = pose[0] * t0;
-        let s_proximal_leg1 = t14 * (t12 * (t16 + t17));
-        let c_proximal_leg1 = t14 * (t12 * t12);
+        let t9 = 2.0 * pose[2];
+        let t10 = pose[3] * t9;
+        let t11 = pose[0] * t0;
+        let s_proximal_leg1 = (t10 + t11) / c_distal_leg1;
+        let t16 = 1.0 - pose[1] * t0;
+        let t17 = pose[3] * t2;
+        let c_proximal_leg1 = (t16 - t17) / c_distal_leg1;
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t28 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
-        let t29 = t8 * t28;
-        let rate_proximal_leg1 = twist[0] - t29;
+        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t25 = t8 * t24;
+        let rate_proximal_leg1 = twist[0] - t25;
         let minus_rate_dot_proximal_leg1 = t8
-            * (minus_rate_distal_leg1 * t29
+            * (minus_rate_distal_leg1 * t25
                 - minus_rate_distal_leg1 * rate_proximal_leg1)
-            + t28 * minus_rate_distal_leg1;
-        let t37 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t38 = pose[2] * t15;
-        let t39 = t10 - t38;
-        let minus_s_distal_leg2 = t16 - t17;
-        let t42 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t42, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t42);
+            + t24 * minus_rate_distal_leg1;
+        let t33 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t34 = pose[3] * t0;
+        let t35 = pose[0] * t9;
+        let minus_s_distal_leg2 = t10 - t11;
+        let t39 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t39, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t45 = 1.0 / (t39 * c_distal_leg2);
-        let t46 = pose[3] * t0;
-        let t47 = pose[0] * t15;
-        let s_proximal_leg2 = t45 * ((t46 + t47) * t39);
-        let t51 = minus_s_distal_leg2 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t51;
-        let c_proximal_leg2 = t45 * (t39 * t39);
+        let t41 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = (t34 + t35) * t41;
+        let t43 = minus_s_distal_leg2 * t41;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t43;
+        let t46 = pose[2] * t9;
+        let c_proximal_leg2 = (t16 - t46) * t41;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t60 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
-        let t61 = t51 * t60;
-        let rate_proximal_leg2 = twist[1] - t61;
-        let minus_rate_dot_proximal_leg2 = t51
-            * (minus_rate_distal_leg2 * t61
+        let t53 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t54 = t43 * t53;
+        let rate_proximal_leg2 = twist[1] - t54;
+        let minus_rate_dot_proximal_leg2 = t43
+            * (minus_rate_distal_leg2 * t54
                 - minus_rate_distal_leg2 * rate_proximal_leg2)
-            + t60 * minus_rate_distal_leg2;
-        let t69 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t73 = 1.0 - t38 - t11;
-        let minus_s_distal_leg3 = t46 - t47;
-        let t76 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t76, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t76);
+            + t53 * minus_rate_distal_leg2;
+        let t62 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let minus_s_distal_leg3 = t34 - t35;
+        let t69 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t69, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t69);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t79 = 1.0 / (t73 * c_distal_leg3);
-        let c_proximal_leg3 = t79 * (t73 * t73);
-        let t82 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t82;
-        let s_proximal_leg3 = t79 * (t73 * (t1 + t3));
+        let t71 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = (1.0 - t46 - t17) * t71;
+        let t73 = minus_s_distal_leg3 * t71;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t73;
+        let s_proximal_leg3 = t71 * (t1 + t3);
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t92 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
-        let t93 = t82 * t92;
-        let rate_proximal_leg3 = twist[2] - t93;
-        let minus_rate_dot_proximal_leg3 = t82
-            * (rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t93)
-            - t92 * rate_distal_leg3;
-        let t101 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t103 = t37 - minus_gproximal_wx_leg2 * t69 - minus_gproximal_wx_leg3 * t101;
-        let t107 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t82 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t83 = t73 * t82;
+        let rate_proximal_leg3 = twist[2] - t83;
+        let minus_rate_dot_proximal_leg3 = t73
+            * (rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t83)
+            - t82 * rate_distal_leg3;
+        let t91 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t93 = t33 - minus_gproximal_wx_leg2 * t62 - minus_gproximal_wx_leg3 * t91;
+        let t97 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t107, 1.0, "actuators")?;
-        let t108 = 1.0 / t107;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t82;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        let t98 = 1.0 / t97;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t73;
         let minus_gproximal_wy_leg1 = c_proximal_leg1 * t8;
-        let t114 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t104 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t115 = t114 * t108;
-        let t121 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t114 * t115;
-        ::overact::guard::platform(t121, 1.0, "actuators")?;
-        let t122 = 1.0 / t121;
-        let t128 = t69 - minus_gproximal_wy_leg1 * t37 - minus_gproximal_wy_leg3 * t101
-            - t103 * t115;
+        let t105 = t104 * t98;
+        let t111 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t104 * t105;
+        ::overact::guard::platform(t111, 1.0, "actuators")?;
+        let t112 = 1.0 / t111;
+        let t118 = t62 - minus_gproximal_wy_leg1 * t33 - minus_gproximal_wy_leg3 * t91
+            - t93 * t105;
         let minus_gproximal_wz_leg1 = s_proximal_leg1 * t8;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t51;
-        let t137 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t43;
+        let t127 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t138 = t137 * t108;
-        let t140 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t114 * t138;
-        let t141 = t140 * t122;
-        let t149 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t137 * t138
-            - t140 * t141;
-        ::overact::guard::platform(t149, 1.0, "actuators")?;
-        let t158 = (t101
-            - (minus_gproximal_wz_leg1 * t37 + minus_gproximal_wz_leg2 * t69)
-            - t103 * t138 - t141 * t128) / t149;
-        let t160 = t122 * t128 - t141 * t158;
-        Ok([t103 * t108 - t115 * t160 - t138 * t158, t160, t158])
+        let t128 = t127 * t98;
+        let t130 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t104 * t128;
+        let t131 = t130 * t112;
+        let t147 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t127 * t128
+            - t130 * t131;
+        ::overact::guard::platform(t147, 1.0, "actuators")?;
+        let t148 = (t91 - (minus_gproximal_wz_leg1 * t33 + minus_gproximal_wz_leg2 * t62)
+            - t93 * t128 - t131 * t118) / t147;
+        let t150 = t112 * t118 - t131 * t148;
+        Ok([t93 * t98 - t105 * t150 - t128 * t148, t150, t148])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1107,7 +1065,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 500 operations (179 additions, 315 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 380 intermediates.
+    /// 445 operations (164 additions, 278 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 329 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1128,318 +1086,266 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t13 * (t5 * t20);
-        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t12 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t5 * t12;
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let t18 = t16 + t17;
+        let s_proximal_leg1 = t18 * t12;
+        let t21 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t30 = 1.0 / c_distal_leg1;
-        let t31 = minus_s_distal_leg1 * t30;
-        let t35 = t31 * t24;
-        let rate_proximal_leg1 = twist[0] - t35;
-        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
-            - t31 * t40;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t31;
-        let t44 = minus_gproximal_wy_leg1 * rate_dot_proximal_leg1;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t31;
-        let t46 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1;
-        let t47 = 9.81 * c_proximal_leg1;
-        let t49 = minus_gproximal_wz_leg1 * t47;
-        let t50 = 9.81 * s_proximal_leg1;
-        let t51 = minus_gproximal_wz_leg1 * t50;
-        let t57 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t58 = minus_rate_distal_leg1 * t57;
-        let t59 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t60 = t58 - t59;
-        let t62 = c_distal_leg1 * rate_proximal_leg1;
-        let t63 = minus_rate_distal_leg1 * t62;
-        let t65 = c_distal_leg1 * t60 + minus_s_distal_leg1 * t63;
-        let t67 = t62 * t57;
-        let t69 = minus_gproximal_wy_leg1 * t65 + s_proximal_leg1 * t67;
-        let t72 = minus_gproximal_wz_leg1 * t65 - c_proximal_leg1 * t67;
-        let t73 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t74 = t73 + t63;
-        let t79 = c_distal_leg1 * (t63 + t74) - minus_s_distal_leg1 * (t58 + t60);
-        let t81 = t62 * t62;
-        let t82 = t57 * t57;
-        let t83 = t81 - t82;
+        let t27 = minus_s_distal_leg1 * t12;
+        let t31 = t27 * t21;
+        let rate_proximal_leg1 = twist[0] - t31;
+        let t34 = minus_rate_distal_leg1 * rate_proximal_leg1;
+        let t36 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t31 - t34;
+        let rate_dot_proximal_leg1 = acceleration[0] - t21 * minus_rate_distal_leg1
+            - t27 * t36;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t27;
+        let t40 = minus_gproximal_wy_leg1 * rate_dot_proximal_leg1;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t27;
+        let t42 = minus_gproximal_wz_leg1 * rate_dot_proximal_leg1;
+        let t43 = 9.81 * c_proximal_leg1;
+        let t44 = minus_gproximal_wy_leg1 * t43;
+        let t45 = minus_gproximal_wz_leg1 * t43;
+        let t46 = 9.81 * s_proximal_leg1;
+        let t47 = minus_gproximal_wz_leg1 * t46;
+        let t53 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t54 = minus_rate_distal_leg1 * t53;
+        let t55 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t57 = t54 + t54 - t55;
+        let t58 = c_distal_leg1 * t57;
+        let t60 = c_distal_leg1 * rate_proximal_leg1;
+        let t61 = t60 * t53;
+        let t63 = minus_gproximal_wy_leg1 * t58 + s_proximal_leg1 * t61;
+        let t66 = minus_gproximal_wz_leg1 * t58 - c_proximal_leg1 * t61;
+        let t69 = 2.0 * (t34 - minus_s_distal_leg1 * t57);
+        let t71 = t60 * t60;
+        let t72 = t53 * t53;
+        let t73 = t71 - t72;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
-        let t96 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t99 = c_distal_leg1 * (t67 - minus_rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t96 - t81);
-        let t113 = minus_s_distal_leg1 * (t67 + minus_rate_dot_distal_leg1)
-            - c_distal_leg1 * (t82 - t96);
-        let t123 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t132 = 9.81 * t5;
-        let t138 = pose[2] * t17;
-        let t139 = t2 - t138;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t142 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t142, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t142);
+            - c_proximal_leg1 * acceleration[2] + t21 * rate_proximal_leg1;
+        let t86 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t89 = c_distal_leg1 * (t61 - minus_rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t86 - t71);
+        let t103 = minus_s_distal_leg1 * (t61 + minus_rate_dot_distal_leg1)
+            - c_distal_leg1 * (t72 - t86);
+        let t104 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t113 = minus_s_distal_leg1 * t43;
+        let t119 = 9.81 * t5;
+        let t122 = pose[3] * t0;
+        let t123 = pose[0] * t15;
+        let t124 = t122 + t123;
+        let minus_s_distal_leg2 = t16 - t17;
+        let t127 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t127, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t127);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t145 = 1.0 / (t139 * c_distal_leg2);
-        let t146 = pose[3] * t0;
-        let t147 = pose[0] * t17;
-        let t148 = t146 + t147;
-        let s_proximal_leg2 = t145 * (t148 * t139);
-        let t151 = 1.0 / c_distal_leg2;
-        let t152 = minus_s_distal_leg2 * t151;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t152;
-        let c_proximal_leg2 = t145 * (t139 * t139);
-        let t158 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t129 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t124 * t129;
+        let t131 = minus_s_distal_leg2 * t129;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t131;
+        let t134 = pose[2] * t15;
+        let t135 = t2 - t134;
+        let t137 = t124 * twist[0] + t135 * twist[2];
+        let t138 = t129 * t137;
+        let c_proximal_leg2 = t135 * t129;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t167 = t152 * t158;
-        let rate_proximal_leg2 = twist[1] - t167;
-        let t172 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t167
-            - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t158 * minus_rate_distal_leg2
-            - t152 * t172;
-        let t175 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t152;
-        let t177 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t178 = 9.81 * s_proximal_leg2;
-        let t180 = minus_gproximal_wz_leg2 * t178;
-        let t181 = 9.81 * c_proximal_leg2;
-        let t182 = minus_gproximal_wz_leg2 * t181;
-        let t188 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t189 = minus_rate_distal_leg2 * t188;
-        let t190 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t191 = t189 - t190;
-        let t193 = c_distal_leg2 * rate_proximal_leg2;
-        let t194 = minus_rate_distal_leg2 * t193;
-        let t196 = c_distal_leg2 * t191 + minus_s_distal_leg2 * t194;
-        let t198 = t193 * t188;
-        let t200 = minus_gproximal_wx_leg2 * t196 - c_proximal_leg2 * t198;
-        let t203 = minus_gproximal_wz_leg2 * t196 + s_proximal_leg2 * t198;
-        let t204 = t193 * t193;
-        let t205 = t188 * t188;
-        let t206 = t204 - t205;
-        let t208 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t209 = t208 + t194;
-        let t214 = c_distal_leg2 * (t194 + t209) - minus_s_distal_leg2 * (t189 + t191);
+        let t148 = t131 * t138;
+        let rate_proximal_leg2 = twist[1] - t148;
+        let t151 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let t153 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t148 - t151;
+        let rate_dot_proximal_leg2 = acceleration[1] - t138 * minus_rate_distal_leg2
+            - t131 * t153;
+        let t156 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t131;
+        let t158 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t159 = 9.81 * s_proximal_leg2;
+        let t160 = minus_gproximal_wx_leg2 * t159;
+        let t161 = minus_gproximal_wz_leg2 * t159;
+        let t162 = 9.81 * c_proximal_leg2;
+        let t163 = minus_gproximal_wz_leg2 * t162;
+        let t169 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t170 = minus_rate_distal_leg2 * t169;
+        let t171 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t173 = t170 + t170 - t171;
+        let t174 = c_distal_leg2 * t173;
+        let t176 = c_distal_leg2 * rate_proximal_leg2;
+        let t177 = t176 * t169;
+        let t179 = minus_gproximal_wx_leg2 * t174 - c_proximal_leg2 * t177;
+        let t182 = minus_gproximal_wz_leg2 * t174 + s_proximal_leg2 * t177;
+        let t183 = t176 * t176;
+        let t184 = t169 * t169;
+        let t185 = t183 - t184;
+        let t189 = 2.0 * (t151 - minus_s_distal_leg2 * t173);
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t158 * rate_proximal_leg2;
-        let t227 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t230 = c_distal_leg2 * (t198 - minus_rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t227 - t204);
-        let t244 = minus_s_distal_leg2 * (t198 + minus_rate_dot_distal_leg2)
-            - c_distal_leg2 * (t205 - t227);
-        let t254 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
-        let t263 = 9.81 * t148;
-        let t270 = 1.0 - t138 - t4;
-        let minus_s_distal_leg3 = t146 - t147;
-        let t273 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t273, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t273);
+            - c_proximal_leg2 * acceleration[0] + t138 * rate_proximal_leg2;
+        let t202 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t205 = c_distal_leg2 * (t177 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t202 - t183);
+        let t219 = minus_s_distal_leg2 * (t177 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t184 - t202);
+        let t221 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t229 = minus_s_distal_leg2 * t159;
+        let t237 = 9.81 * t124;
+        let t239 = 1.0 - t134 - t4;
+        let minus_s_distal_leg3 = t122 - t123;
+        let t242 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t242, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t242);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t276 = 1.0 / (t270 * c_distal_leg3);
-        let c_proximal_leg3 = t276 * (t270 * t270);
-        let t279 = 1.0 / c_distal_leg3;
-        let t280 = minus_s_distal_leg3 * t279;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t280;
-        let t283 = t6 + t7;
-        let s_proximal_leg3 = t276 * (t270 * t283);
-        let t287 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t244 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t239 * t244;
+        let t246 = minus_s_distal_leg3 * t244;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t246;
+        let t249 = t6 + t7;
+        let t251 = t239 * twist[0] + t249 * twist[1];
+        let t252 = t244 * t251;
+        let s_proximal_leg3 = t244 * t249;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t296 = t280 * t287;
-        let rate_proximal_leg3 = twist[2] - t296;
-        let t301 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t296;
-        let rate_dot_proximal_leg3 = acceleration[2] + t287 * rate_distal_leg3
-            - t280 * t301;
-        let t304 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t280;
-        let t306 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
-        let t312 = c_distal_leg3 * rate_proximal_leg3;
-        let t313 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t314 = t312 * t313;
-        let t316 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t317 = rate_distal_leg3 * t313;
-        let t318 = t316 + t317;
-        let t320 = rate_distal_leg3 * t312;
-        let t322 = c_distal_leg3 * t318 + minus_s_distal_leg3 * t320;
-        let t324 = s_proximal_leg3 * t314 - minus_gproximal_wx_leg3 * t322;
-        let t327 = minus_gproximal_wy_leg3 * t322 + c_proximal_leg3 * t314;
-        let t330 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t331 = t320 - t330;
-        let t334 = minus_s_distal_leg3 * (t317 + t318) - c_distal_leg3 * (t320 + t331);
-        let t336 = t312 * t312;
-        let t337 = t313 * t313;
-        let t338 = t336 - t337;
+        let t261 = t239 * acceleration[0] + t249 * acceleration[1];
+        let t263 = t246 * t252;
+        let rate_proximal_leg3 = twist[2] - t263;
+        let t265 = rate_distal_leg3 * rate_proximal_leg3;
+        let rate_dot_proximal_leg3 = acceleration[2] + t252 * rate_distal_leg3
+            - t246 * (t244 * t261 + t265 - rate_distal_leg3 * t263);
+        let t271 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t246;
+        let t273 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t279 = c_distal_leg3 * rate_proximal_leg3;
+        let t280 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t281 = t279 * t280;
+        let t283 = rate_distal_leg3 * t280;
+        let t284 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t286 = t283 + t284 + t283;
+        let t287 = c_distal_leg3 * t286;
+        let t289 = s_proximal_leg3 * t281 - minus_gproximal_wx_leg3 * t287;
+        let t292 = minus_gproximal_wy_leg3 * t287 + c_proximal_leg3 * t281;
+        let t295 = 2.0 * (t265 - minus_s_distal_leg3 * t286);
+        let t297 = t279 * t279;
+        let t298 = t280 * t280;
+        let t299 = t297 - t298;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t287 * rate_proximal_leg3;
-        let t351 = rate_distal_leg3 * rate_distal_leg3;
-        let t354 = c_distal_leg3 * (t314 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t351 - t336);
-        let t369 = minus_s_distal_leg3 * (t314 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t337 - t351);
-        let rate_dot_wrist_leg3 = t279 * t301;
-        let t384 = rate_dot_wrist_leg3 - t331;
-        let rate_wrist_leg2 = t151 * t158;
-        let t387 = t188 + rate_wrist_leg2;
-        let rate_wrist_leg3 = t279 * t287;
-        let t389 = t313 + rate_wrist_leg3;
-        let t390 = t387 * t389;
-        let t391 = minus_s_distal_leg1 * t390;
-        let rate_wrist_leg1 = t30 * t24;
-        let t394 = t57 + rate_wrist_leg1;
-        let t395 = t394 * t389;
-        let t396 = t148 * t395;
-        let t399 = t5 * t390;
-        let t401 = minus_s_distal_leg2 * t395;
-        let t404 = t20 * t390;
-        let t406 = t139 * t395;
-        let t408 = t394 * t387;
-        let t409 = t408 + t384;
-        let rate_dot_wrist_leg1 = t30 * t40;
-        let t412 = t74 + rate_dot_wrist_leg1;
-        let t413 = t390 - t412;
-        let t416 = t389 * t389;
-        let t417 = t394 * t394;
-        let t418 = t416 - t417;
-        let rate_dot_wrist_leg2 = t151 * t172;
-        let t432 = t209 + rate_dot_wrist_leg2;
-        let t433 = t395 + t432;
-        let t435 = t387 * t387;
-        let t436 = t435 - t416;
-        let t439 = t408 - t384;
-        let t453 = t270 * t408;
-        let t457 = t283 * t408;
-        let t461 = minus_s_distal_leg3 * t408;
-        let t464 = t417 - t435;
-        let t466 = t395 - t432;
-        let t469 = t390 + t412;
-        let t491 = 9.81 * t20;
-        let t493 = 9.81 * t139;
-        let t500 = 9.81 * minus_s_distal_leg3;
+            - s_proximal_leg3 * acceleration[0] - t252 * rate_proximal_leg3;
+        let t312 = rate_distal_leg3 * rate_distal_leg3;
+        let t315 = c_distal_leg3 * (t281 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t312 - t297);
+        let t325 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t331 = minus_s_distal_leg3 * (t281 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t298 - t312);
+        let t339 = 9.81 * t249;
+        let t341 = 9.81 * t239;
+        let t344 = t261 + minus_s_distal_leg3 * acceleration[2];
+        let t347 = t251 + minus_s_distal_leg3 * twist[2];
+        let t349 = minus_s_distal_leg2 * twist[1] + t137;
+        let t350 = t347 * t349;
+        let t351 = minus_s_distal_leg1 * t350;
+        let rate_wrist_leg1 = t12 * t21;
+        let t354 = t53 + rate_wrist_leg1;
+        let t355 = t354 * t347;
+        let t356 = t124 * t355;
+        let t359 = t5 * t350;
+        let t361 = minus_s_distal_leg2 * t355;
+        let t364 = t18 * t350;
+        let t366 = t135 * t355;
+        let rate_dot_wrist_leg1 = t12 * t36;
+        let t371 = t104 + minus_rate_distal_leg1 * t60 + rate_dot_wrist_leg1;
+        let t372 = t371 - t350;
+        let t374 = t354 * t349;
+        let t375 = t344 + t374;
+        let t378 = t347 * t347;
+        let t379 = t354 * t354;
+        let t380 = t378 - t379;
+        let t396 = t221 + minus_rate_distal_leg2 * t176 + t129 * t153;
+        let t397 = t396 + t355;
+        let t399 = t349 * t349;
+        let t400 = t399 - t378;
+        let t403 = t344 - t374;
+        let t417 = t239 * t374;
+        let t421 = t249 * t374;
+        let t425 = minus_s_distal_leg3 * t374;
+        let t428 = t379 - t399;
+        let t430 = t396 - t355;
+        let t433 = t371 + t350;
         Ok([
             [
-                rate_dot_proximal_leg1, -t47, t50, rate_dot_proximal_leg1, rate_proximal_leg1,
-                ::overact::math::sign(rate_proximal_leg1), 1.0, -t65, t79, -t99,
-                rate_dot_proximal_leg1 + t65, t113, 0.0, t123, -t132, -t50, -t175,
-                -(minus_gproximal_wx_leg2 * t178), -t180, -t175,
-                -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
+                rate_dot_proximal_leg1, -t43, t46, rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, -t58, t69, -t89,
+                rate_dot_proximal_leg1 + t58, t103, 0.0, t113, -t119, -t46, -t156, -t160, -t161,
+                -t156, -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
-                -minus_gproximal_wx_leg2, t200,
-                c_proximal_leg2 * t206 - minus_gproximal_wx_leg2 * t214,
-                minus_gproximal_wx_leg2 * t230 - c_proximal_leg2 * t190, -(t175 + t200),
-                -(minus_gproximal_wx_leg2 * t244 + c_proximal_leg2 * t208),
+                -minus_gproximal_wx_leg2, t179,
+                c_proximal_leg2 * t185 - minus_gproximal_wx_leg2 * t189,
+                minus_gproximal_wx_leg2 * t205 - c_proximal_leg2 * t171, -(t156 + t179),
+                -(minus_gproximal_wx_leg2 * t219 + c_proximal_leg2 * t221),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t254 - 9.81 * (t139 * c_proximal_leg2),
-                -(minus_gproximal_wx_leg2 * t263
-                    + c_proximal_leg2
-                        * (9.81 * (minus_s_distal_leg2 * c_proximal_leg2))),
-                t180,
-                -t304,
-                -t304,
-                -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                minus_gproximal_wx_leg2 * t229 - t135 * t162, -(c_distal_leg2 * (t160 + t163)),
+                t161, -t271, -t271, -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
-                -minus_gproximal_wx_leg3,
-                t324,
-                -(minus_gproximal_wx_leg3 * t334 + s_proximal_leg3 * t338),
-                minus_gproximal_wx_leg3 * t354 + s_proximal_leg3 * t316,
-                -(t304 + t324),
-                s_proximal_leg3 * t330 - minus_gproximal_wx_leg3 * t369,
-                -(s_proximal_leg3 * rate_dot_distal_leg3),
-                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
-                -(9.81 * t283),
-                t270 * t384 + t391 - t396,
-                minus_s_distal_leg1 * t409 - t270 * t413 + t148 * t418,
-                t270 * t433 + minus_s_distal_leg1 * t436 - t148 * t439,
-                minus_s_distal_leg1 * t412 - t453 + t396,
-                t270 * t464 - minus_s_distal_leg1 * t466 + t148 * t469,
-                t453 - t391 + t148 * t432,
-                t148 * t491 - minus_s_distal_leg1 * t493,
-                t270 * t493 - t148 * t500,
-                minus_s_distal_leg1 * t500 - t270 * t491,
+                -minus_gproximal_wx_leg3, t289,
+                -(s_proximal_leg3 * t299 - minus_gproximal_wx_leg3 * t295),
+                minus_gproximal_wx_leg3 * t315 + s_proximal_leg3 * t284, -(t271 + t289),
+                s_proximal_leg3 * t325 - minus_gproximal_wx_leg3 * t331,
+                -(s_proximal_leg3 * rate_dot_distal_leg3), t246 * t339, -t339,
+                t239 * t344 + t351 - t356, t239 * t372 + minus_s_distal_leg1 * t375 + t124 * t380,
+                t239 * t397 + minus_s_distal_leg1 * t400 + t124 * t403,
+                minus_s_distal_leg1 * t371 - t417 + t356,
+                t239 * t428 + minus_s_distal_leg1 * t430 + t124 * t433, t417 - t351 + t124 * t396,
+                t339, t119, 9.81 * minus_s_distal_leg2,
             ],
             [
-                -t44, minus_gproximal_wy_leg1 * t47, -t49, -t44,
-                -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
+                -t40, t44, -t45, -t40, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
-                -minus_gproximal_wy_leg1, t69,
-                -(minus_gproximal_wy_leg1 * t79 + s_proximal_leg1 * t83),
-                minus_gproximal_wy_leg1 * t99 + s_proximal_leg1 * t59, -(t44 + t69),
-                s_proximal_leg1 * t73 - minus_gproximal_wy_leg1 * t113,
+                -minus_gproximal_wy_leg1, t63,
+                -(minus_gproximal_wy_leg1 * t69 + s_proximal_leg1 * t73),
+                minus_gproximal_wy_leg1 * t89 + s_proximal_leg1 * t55, -(t40 + t63),
+                s_proximal_leg1 * t104 - minus_gproximal_wy_leg1 * t103,
                 s_proximal_leg1 * minus_rate_dot_distal_leg1,
-                9.81 * (t20 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t123,
-                minus_gproximal_wy_leg1 * t132
-                    + s_proximal_leg1 * (9.81 * (minus_s_distal_leg1 * s_proximal_leg1)),
-                t49,
-                rate_dot_proximal_leg2,
-                t178,
-                t181,
-                rate_dot_proximal_leg2,
-                rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2),
-                1.0,
-                -t196,
-                t214,
-                -t230,
-                rate_dot_proximal_leg2 + t196,
-                t244,
-                0.0,
-                -t254,
-                t263,
-                -t181,
-                -t306,
-                -t306,
+                t18 * t46 - minus_gproximal_wy_leg1 * t113, c_distal_leg1 * (t44 + t47), t45,
+                rate_dot_proximal_leg2, t159, t162, rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, -t174, t189, -t205,
+                rate_dot_proximal_leg2 + t174, t219, 0.0, -t229, t237, -t162, -t273, -t273,
                 -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
-                -minus_gproximal_wy_leg3,
-                -t327,
-                c_proximal_leg3 * t338 - minus_gproximal_wy_leg3 * t334,
-                minus_gproximal_wy_leg3 * t354 - c_proximal_leg3 * t316,
-                t327 - t306,
-                -(minus_gproximal_wy_leg3 * t369 + c_proximal_leg3 * t330),
-                c_proximal_leg3 * rate_dot_distal_leg3,
-                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
-                9.81 * t270,
-                t283 * t384 + t399 - t401,
-                t5 * t409 - t283 * t413 + minus_s_distal_leg2 * t418,
-                t283 * t433 + t5 * t436 - minus_s_distal_leg2 * t439,
-                t5 * t412 - t457 + t401,
-                t283 * t464 - t5 * t466 + minus_s_distal_leg2 * t469,
-                t457 - t399 + minus_s_distal_leg2 * t432,
-                minus_s_distal_leg2 * t491 - t5 * t493,
-                t283 * t493 - minus_s_distal_leg2 * t500,
-                t5 * t500 - t283 * t491,
+                -minus_gproximal_wy_leg3, -t292,
+                c_proximal_leg3 * t299 + minus_gproximal_wy_leg3 * t295,
+                minus_gproximal_wy_leg3 * t315 - c_proximal_leg3 * t284, t292 - t273,
+                -(minus_gproximal_wy_leg3 * t331 + c_proximal_leg3 * t325),
+                c_proximal_leg3 * rate_dot_distal_leg3, -(t246 * t341), t341,
+                t249 * t344 + t359 - t361, t249 * t372 + t5 * t375 + minus_s_distal_leg2 * t380,
+                t249 * t397 + t5 * t400 + minus_s_distal_leg2 * t403, t5 * t371 - t421 + t361,
+                t249 * t428 + t5 * t430 + minus_s_distal_leg2 * t433,
+                t421 - t359 + minus_s_distal_leg2 * t396, -t341, -(9.81 * minus_s_distal_leg1),
+                -t237,
             ],
             [
-                -t46, t49, -t51, -t46, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
+                -t42, t45, -t47, -t42, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
-                -minus_gproximal_wz_leg1, t72,
-                c_proximal_leg1 * t83 - minus_gproximal_wz_leg1 * t79,
-                minus_gproximal_wz_leg1 * t99 - c_proximal_leg1 * t59, -(t46 + t72),
-                -(minus_gproximal_wz_leg1 * t113 + c_proximal_leg1 * t73),
-                -(c_proximal_leg1 * minus_rate_dot_distal_leg1),
-                -(minus_gproximal_wz_leg1 * t123 + 9.81 * (t5 * s_proximal_leg1)), 0.0, t51, -t177,
-                -t180, -t182, -t177, -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
+                -minus_gproximal_wz_leg1, t66,
+                c_proximal_leg1 * t73 - minus_gproximal_wz_leg1 * t69,
+                minus_gproximal_wz_leg1 * t89 - c_proximal_leg1 * t55, -(t42 + t66),
+                -(minus_gproximal_wz_leg1 * t103 + c_proximal_leg1 * t104),
+                -(c_proximal_leg1 * minus_rate_dot_distal_leg1), -(t46 * (c_proximal_leg1 * t12)),
+                0.0, t47, -t158, -t161, -t163, -t158,
+                -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
-                -minus_gproximal_wz_leg2, t203,
-                -(minus_gproximal_wz_leg2 * t214 + s_proximal_leg2 * t206),
-                minus_gproximal_wz_leg2 * t230 + s_proximal_leg2 * t190, -(t177 + t203),
-                s_proximal_leg2 * t208 - minus_gproximal_wz_leg2 * t244,
-                s_proximal_leg2 * minus_rate_dot_distal_leg2,
-                minus_gproximal_wz_leg2 * t254 + 9.81 * (t148 * c_proximal_leg2), 0.0, t182,
-                rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, t322, t334, -t354,
-                rate_dot_proximal_leg3 - t322, t369, 0.0, 0.0, 0.0,
-                minus_s_distal_leg3 * t384 + t404 - t406,
-                t20 * t409 - minus_s_distal_leg3 * t413 + t139 * t418,
-                minus_s_distal_leg3 * t433 + t20 * t436 - t139 * t439, t20 * t412 - t461 + t406,
-                minus_s_distal_leg3 * t464 - t20 * t466 + t139 * t469, t461 - t404 + t139 * t432,
+                -minus_gproximal_wz_leg2, t182,
+                -(minus_gproximal_wz_leg2 * t189 + s_proximal_leg2 * t185),
+                minus_gproximal_wz_leg2 * t205 + s_proximal_leg2 * t171, -(t158 + t182),
+                s_proximal_leg2 * t221 - minus_gproximal_wz_leg2 * t219,
+                s_proximal_leg2 * minus_rate_dot_distal_leg2, t162 * (s_proximal_leg2 * t129), 0.0,
+                t163, rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t287, -t295, -t315,
+                rate_dot_proximal_leg3 - t287, t331, 0.0, 0.0, 0.0,
+                minus_s_distal_leg3 * t344 + t364 - t366,
+                minus_s_distal_leg3 * t372 + t18 * t375 + t135 * t380,
+                minus_s_distal_leg3 * t397 + t18 * t400 + t135 * t403, t18 * t371 - t425 + t366,
+                minus_s_distal_leg3 * t428 + t18 * t430 + t135 * t433, t425 - t364 + t135 * t396,
                 0.0, 0.0, 0.0,
             ],
         ])
@@ -1455,7 +1361,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 479 operations (180 additions, 296 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 368 intermediates.
+    /// 447 operations (163 additions, 279 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 336 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1482,10 +1388,10 @@ impl Spherical3Rrr {
         let t12 = c_distal_leg1 / minus_s_distal_leg1;
         let t13 = t12 * t4;
         let rate_proximal_leg1 = t13 + twist[0];
+        let t15 = minus_rate_distal_leg1 * rate_proximal_leg1;
         let rate_dot_proximal_leg1 = acceleration[0] - t4 * minus_rate_distal_leg1
             - t12
-                * (minus_rate_distal_leg1 * rate_proximal_leg1
-                    + minus_rate_distal_leg1 * t13
+                * (t15 + minus_rate_distal_leg1 * t13
                     - (minus_c_proximal_leg1 * acceleration[1]
                         + minus_s_proximal_leg1 * acceleration[2]));
         let gproximal_wy_leg1 = minus_c_proximal_leg1 * t12;
@@ -1496,241 +1402,271 @@ impl Spherical3Rrr {
         let t30 = gproximal_wz_leg1 * t28;
         let t31 = 9.81 * minus_s_proximal_leg1;
         let t32 = gproximal_wz_leg1 * t31;
-        let t38 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t39 = c_distal_leg1 * rate_proximal_leg1;
-        let t40 = minus_rate_distal_leg1 * t39;
-        let t41 = t38 + t40;
-        let t43 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t44 = minus_rate_distal_leg1 * t43;
-        let t46 = minus_s_distal_leg1 * t41 + c_distal_leg1 * t44;
-        let t48 = t43 * t39;
-        let t50 = gproximal_wy_leg1 * t46 - minus_s_proximal_leg1 * t48;
-        let t53 = gproximal_wz_leg1 * t46 + minus_c_proximal_leg1 * t48;
-        let t54 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t60 = minus_s_distal_leg1 * (t44 - (t54 - t44))
-            - c_distal_leg1 * (t40 + t41);
-        let t62 = t43 * t43;
-        let t63 = t39 * t39;
-        let t64 = t62 - t63;
+        let t38 = c_distal_leg1 * rate_proximal_leg1;
+        let t39 = minus_rate_distal_leg1 * t38;
+        let t40 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t42 = t39 + t40 + t39;
+        let t43 = minus_s_distal_leg1 * t42;
+        let t45 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t46 = t45 * t38;
+        let t48 = gproximal_wy_leg1 * t43 - minus_s_proximal_leg1 * t46;
+        let t51 = gproximal_wz_leg1 * t43 + minus_c_proximal_leg1 * t46;
+        let t54 = 2.0 * (t15 - c_distal_leg1 * t42);
+        let t56 = t45 * t45;
+        let t57 = t38 * t38;
+        let t58 = t56 - t57;
         let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
             - minus_c_proximal_leg1 * acceleration[2] + t4 * rate_proximal_leg1;
-        let t77 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t80 = minus_s_distal_leg1 * (t48 + minus_rate_dot_distal_leg1)
-            + c_distal_leg1 * (t77 - t62);
-        let t94 = minus_s_distal_leg1 * (t63 - t77)
-            + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t48);
-        let t103 = c_distal_leg1 * t28;
-        let t104 = minus_s_distal_leg1 * t31;
-        let t117 = c_distal_leg2 / minus_s_distal_leg2;
-        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t117;
-        let t121 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let t71 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t74 = minus_s_distal_leg1 * (t46 + minus_rate_dot_distal_leg1)
+            + c_distal_leg1 * (t71 - t56);
+        let t88 = minus_s_distal_leg1 * (t57 - t71)
+            + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t46);
+        let t90 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t98 = c_distal_leg1 * t28;
+        let t111 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t111;
+        let t115 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
             - minus_c_proximal_leg2 * twist[0];
-        let t127 = t117 * t121;
-        let rate_proximal_leg2 = t127 + twist[1];
-        let rate_dot_proximal_leg2 = acceleration[1] - t121 * minus_rate_distal_leg2
-            - t117
-                * (minus_rate_distal_leg2 * rate_proximal_leg2
-                    + minus_rate_distal_leg2 * t127
+        let t121 = t111 * t115;
+        let rate_proximal_leg2 = t121 + twist[1];
+        let t123 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t115 * minus_rate_distal_leg2
+            - t111
+                * (t123 + minus_rate_distal_leg2 * t121
                     - (minus_s_proximal_leg2 * acceleration[0]
                         + minus_c_proximal_leg2 * acceleration[2]));
-        let t138 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
-        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t117;
-        let t140 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t141 = 9.81 * minus_s_proximal_leg2;
-        let t143 = gproximal_wz_leg2 * t141;
-        let t144 = 9.81 * minus_c_proximal_leg2;
-        let t145 = gproximal_wz_leg2 * t144;
-        let t151 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t152 = c_distal_leg2 * rate_proximal_leg2;
-        let t153 = minus_rate_distal_leg2 * t152;
-        let t154 = t151 + t153;
-        let t156 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t157 = minus_rate_distal_leg2 * t156;
-        let t159 = minus_s_distal_leg2 * t154 + c_distal_leg2 * t157;
-        let t161 = t156 * t152;
-        let t163 = gproximal_wx_leg2 * t159 + minus_c_proximal_leg2 * t161;
-        let t166 = gproximal_wz_leg2 * t159 - minus_s_proximal_leg2 * t161;
-        let t167 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t173 = minus_s_distal_leg2 * (t157 - (t167 - t157))
-            - c_distal_leg2 * (t153 + t154);
-        let t175 = t156 * t156;
-        let t176 = t152 * t152;
-        let t177 = t175 - t176;
+        let t132 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t111;
+        let t134 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t135 = 9.81 * minus_s_proximal_leg2;
+        let t137 = gproximal_wz_leg2 * t135;
+        let t138 = 9.81 * minus_c_proximal_leg2;
+        let t139 = gproximal_wz_leg2 * t138;
+        let t145 = c_distal_leg2 * rate_proximal_leg2;
+        let t146 = minus_rate_distal_leg2 * t145;
+        let t147 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t149 = t146 + t147 + t146;
+        let t150 = minus_s_distal_leg2 * t149;
+        let t152 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t153 = t152 * t145;
+        let t155 = gproximal_wx_leg2 * t150 + minus_c_proximal_leg2 * t153;
+        let t158 = gproximal_wz_leg2 * t150 - minus_s_proximal_leg2 * t153;
+        let t161 = 2.0 * (t123 - c_distal_leg2 * t149);
+        let t163 = t152 * t152;
+        let t164 = t145 * t145;
+        let t165 = t163 - t164;
         let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
-            - minus_c_proximal_leg2 * acceleration[0] + t121 * rate_proximal_leg2;
-        let t190 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t193 = minus_s_distal_leg2 * (t161 + minus_rate_dot_distal_leg2)
-            + c_distal_leg2 * (t190 - t175);
-        let t208 = minus_s_distal_leg2 * (t176 - t190)
-            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t161);
-        let t216 = c_distal_leg2 * t141;
-        let t218 = minus_s_distal_leg2 * t144;
-        let t230 = c_distal_leg3 / minus_s_distal_leg3;
-        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t230;
+            - minus_c_proximal_leg2 * acceleration[0] + t115 * rate_proximal_leg2;
+        let t178 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t181 = minus_s_distal_leg2 * (t153 + minus_rate_dot_distal_leg2)
+            + c_distal_leg2 * (t178 - t163);
+        let t191 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t197 = minus_s_distal_leg2 * (t164 - t178)
+            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t153);
+        let t205 = c_distal_leg2 * t135;
+        let t218 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t218;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t240 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
-        let t241 = t230 * t240;
-        let rate_proximal_leg3 = t241 + twist[2];
-        let rate_dot_proximal_leg3 = t230
+        let t228 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t229 = t218 * t228;
+        let rate_proximal_leg3 = t229 + twist[2];
+        let t231 = rate_distal_leg3 * rate_proximal_leg3;
+        let rate_dot_proximal_leg3 = t218
             * (minus_c_proximal_leg3 * acceleration[0]
-                + minus_s_proximal_leg3 * acceleration[1]
-                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t241)
-            + acceleration[2] + t240 * rate_distal_leg3;
-        let t251 = gproximal_wx_leg3 * rate_dot_proximal_leg3;
-        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t230;
-        let t253 = gproximal_wy_leg3 * rate_dot_proximal_leg3;
-        let t259 = c_distal_leg3 * rate_proximal_leg3;
-        let t260 = rate_distal_leg3 * t259;
-        let t261 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t262 = t260 - t261;
-        let t264 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t265 = rate_distal_leg3 * t264;
-        let t267 = minus_s_distal_leg3 * t262 + c_distal_leg3 * t265;
-        let t269 = t264 * t259;
-        let t271 = gproximal_wx_leg3 * t267 + minus_s_proximal_leg3 * t269;
-        let t274 = minus_c_proximal_leg3 * t269 - gproximal_wy_leg3 * t267;
-        let t277 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t281 = c_distal_leg3 * (t260 + t262)
-            - minus_s_distal_leg3 * (t265 + t277 + t265);
-        let t283 = t264 * t264;
-        let t284 = t259 * t259;
-        let t285 = t283 - t284;
-        let t291 = rate_distal_leg3 * rate_distal_leg3;
+                + minus_s_proximal_leg3 * acceleration[1] + t231
+                + rate_distal_leg3 * t229) + acceleration[2] + t228 * rate_distal_leg3;
+        let t239 = gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t218;
+        let t241 = gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t247 = c_distal_leg3 * rate_proximal_leg3;
+        let t248 = rate_distal_leg3 * t247;
+        let t249 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t251 = t248 + t248 - t249;
+        let t252 = minus_s_distal_leg3 * t251;
+        let t254 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t255 = t254 * t247;
+        let t257 = gproximal_wx_leg3 * t252 + minus_s_proximal_leg3 * t255;
+        let t260 = minus_c_proximal_leg3 * t255 - gproximal_wy_leg3 * t252;
+        let t263 = 2.0 * (t231 - c_distal_leg3 * t251);
+        let t265 = t254 * t254;
+        let t266 = t247 * t247;
+        let t267 = t265 - t266;
+        let t273 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
-            - minus_s_proximal_leg3 * acceleration[0] - t240 * rate_proximal_leg3;
-        let t301 = c_distal_leg3 * (t291 - t283)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t269);
-        let t315 = c_distal_leg3 * (t269 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t284 - t291);
-        let t324 = 9.81 * c_distal_leg3;
-        let t327 = 9.81 * minus_s_distal_leg3;
-        let t330 = 2.0 * pose[2];
-        let t331 = pose[2] * t330;
-        let t333 = 2.0 * pose[3];
-        let t334 = pose[3] * t333;
-        let t335 = 1.0 - t331 - t334;
-        let t337 = 2.0 * pose[1];
-        let t338 = pose[2] * t337;
-        let t339 = pose[0] * t333;
-        let t340 = t338 + t339;
-        let t343 = pose[3] * t337;
-        let t344 = pose[0] * t330;
-        let t345 = t343 - t344;
-        let t347 = t335 * acceleration[0] + t340 * acceleration[1]
-            + t345 * acceleration[2];
-        let t349 = t338 - t339;
-        let t354 = t335 * twist[0] + t340 * twist[1] + t345 * twist[2];
-        let t355 = t343 + t344;
-        let t357 = pose[3] * t330;
-        let t358 = pose[0] * t337;
-        let t359 = t357 - t358;
-        let t363 = 1.0 - pose[1] * t337;
-        let t364 = t363 - t331;
-        let t366 = t355 * twist[0] + t359 * twist[1] + t364 * twist[2];
-        let t367 = t354 * t366;
-        let t368 = t349 * t367;
-        let t371 = t363 - t334;
-        let t374 = t357 + t358;
-        let t376 = t349 * twist[0] + t371 * twist[1] + t374 * twist[2];
-        let t377 = t354 * t376;
-        let t378 = t355 * t377;
-        let t381 = t371 * t367;
-        let t383 = t359 * t377;
-        let t386 = t374 * t367;
-        let t388 = t364 * t377;
-        let t390 = t376 * t366;
-        let t391 = t390 + t347;
-        let t397 = t349 * acceleration[0] + t371 * acceleration[1]
-            + t374 * acceleration[2];
-        let t398 = t367 - t397;
-        let t401 = t354 * t354;
-        let t402 = t376 * t376;
-        let t403 = t401 - t402;
-        let t420 = t355 * acceleration[0] + t359 * acceleration[1]
-            + t364 * acceleration[2];
-        let t421 = t377 + t420;
-        let t423 = t366 * t366;
-        let t424 = t423 - t401;
-        let t427 = t390 - t347;
-        let t441 = t335 * t390;
-        let t445 = t340 * t390;
-        let t449 = t345 * t390;
-        let t452 = t402 - t423;
-        let t454 = t377 - t420;
-        let t457 = t367 + t397;
-        let t479 = 9.81 * t374;
-        let t481 = 9.81 * t364;
-        let t488 = 9.81 * t345;
+            - minus_s_proximal_leg3 * acceleration[0] - t228 * rate_proximal_leg3;
+        let t283 = c_distal_leg3 * (t273 - t265)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t255);
+        let t297 = c_distal_leg3 * (t255 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t266 - t273);
+        let t299 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t307 = 9.81 * c_distal_leg3;
+        let t310 = 9.81 * minus_s_distal_leg3;
+        let t313 = 2.0 * pose[2];
+        let t314 = pose[2] * t313;
+        let t316 = 2.0 * pose[3];
+        let t317 = pose[3] * t316;
+        let t318 = 1.0 - t314 - t317;
+        let t320 = 2.0 * pose[1];
+        let t321 = pose[2] * t320;
+        let t322 = pose[0] * t316;
+        let t323 = t321 + t322;
+        let t326 = pose[3] * t320;
+        let t327 = pose[0] * t313;
+        let t328 = t326 - t327;
+        let t330 = t318 * acceleration[0] + t323 * acceleration[1]
+            + t328 * acceleration[2];
+        let t332 = t321 - t322;
+        let t337 = t318 * twist[0] + t323 * twist[1] + t328 * twist[2];
+        let t338 = t326 + t327;
+        let t340 = pose[3] * t313;
+        let t341 = pose[0] * t320;
+        let t342 = t340 - t341;
+        let t346 = 1.0 - pose[1] * t320;
+        let t347 = t346 - t314;
+        let t349 = t338 * twist[0] + t342 * twist[1] + t347 * twist[2];
+        let t350 = t337 * t349;
+        let t351 = t332 * t350;
+        let t354 = t346 - t317;
+        let t357 = t340 + t341;
+        let t359 = t332 * twist[0] + t354 * twist[1] + t357 * twist[2];
+        let t360 = t337 * t359;
+        let t361 = t338 * t360;
+        let t364 = t354 * t350;
+        let t366 = t342 * t360;
+        let t369 = t357 * t350;
+        let t371 = t347 * t360;
+        let t377 = t332 * acceleration[0] + t354 * acceleration[1]
+            + t357 * acceleration[2];
+        let t378 = t377 - t350;
+        let t380 = t359 * t349;
+        let t381 = t330 + t380;
+        let t384 = t337 * t337;
+        let t385 = t359 * t359;
+        let t386 = t384 - t385;
+        let t403 = t338 * acceleration[0] + t342 * acceleration[1]
+            + t347 * acceleration[2];
+        let t404 = t403 + t360;
+        let t406 = t349 * t349;
+        let t407 = t406 - t384;
+        let t410 = t330 - t380;
+        let t424 = t318 * t380;
+        let t428 = t323 * t380;
+        let t432 = t328 * t380;
+        let t435 = t385 - t406;
+        let t437 = t403 - t360;
+        let t440 = t377 + t350;
         Ok([
             [
                 rate_dot_proximal_leg1, -t28, t31, rate_dot_proximal_leg1, rate_proximal_leg1,
-                ::overact::math::sign(rate_proximal_leg1), 1.0, t46, t60, t80,
-                rate_dot_proximal_leg1 - t46, -t94, 0.0, -t103, -(minus_s_distal_leg1 * t28), -t31,
-                t138, gproximal_wx_leg2 * t141, t143, t138, gproximal_wx_leg2 * rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t43, t54, t74,
+                rate_dot_proximal_leg1 - t43, -t88, 0.0, -t98, -(minus_s_distal_leg1 * t28), -t31,
+                t132, gproximal_wx_leg2 * t135, t137, t132, gproximal_wx_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2), gproximal_wx_leg2,
-                t163, gproximal_wx_leg2 * t173 + minus_c_proximal_leg2 * t177,
-                gproximal_wx_leg2 * t193 - minus_c_proximal_leg2 * t151, t138 - t163,
-                minus_c_proximal_leg2 * t167 - gproximal_wx_leg2 * t208,
+                t155, gproximal_wx_leg2 * t161 + minus_c_proximal_leg2 * t165,
+                gproximal_wx_leg2 * t181 - minus_c_proximal_leg2 * t147, t132 - t155,
+                minus_c_proximal_leg2 * t191 - gproximal_wx_leg2 * t197,
                 -(minus_c_proximal_leg2 * minus_rate_dot_distal_leg2),
-                gproximal_wx_leg2 * t216 - minus_c_proximal_leg2 * t218, 9.81 * c_distal_leg2,
-                -t143, t251, t251, gproximal_wx_leg3 * rate_proximal_leg3,
-                ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3), gproximal_wx_leg3,
-                -t271, gproximal_wx_leg3 * t281 - minus_s_proximal_leg3 * t285,
-                gproximal_wx_leg3 * t301 + minus_s_proximal_leg3 * t261, t251 + t271,
-                gproximal_wx_leg3 * t315 - minus_s_proximal_leg3 * t277,
-                -(minus_s_proximal_leg3 * rate_dot_distal_leg3), -(minus_s_proximal_leg3 * t324),
-                -(minus_s_proximal_leg3 * t327), t335 * t347 + t368 - t378,
-                t349 * t391 - t335 * t398 + t355 * t403, t335 * t421 + t349 * t424 - t355 * t427,
-                t349 * t397 - t441 + t378, t335 * t452 - t349 * t454 + t355 * t457,
-                t441 - t368 + t355 * t420, t355 * t479 - t349 * t481, t335 * t481 - t355 * t488,
-                t349 * t488 - t335 * t479,
+                gproximal_wx_leg2 * t205
+                    - minus_c_proximal_leg2 * (minus_s_distal_leg2 * t138),
+                9.81 * c_distal_leg2,
+                -t137,
+                t239,
+                t239,
+                gproximal_wx_leg3 * rate_proximal_leg3,
+                ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3),
+                gproximal_wx_leg3,
+                -t257,
+                -(gproximal_wx_leg3 * t263 + minus_s_proximal_leg3 * t267),
+                gproximal_wx_leg3 * t283 + minus_s_proximal_leg3 * t249,
+                t239 + t257,
+                gproximal_wx_leg3 * t297 - minus_s_proximal_leg3 * t299,
+                -(minus_s_proximal_leg3 * rate_dot_distal_leg3),
+                -(minus_s_proximal_leg3 * t307),
+                -(minus_s_proximal_leg3 * t310),
+                t318 * t330 + t351 - t361,
+                t318 * t378 + t332 * t381 + t338 * t386,
+                t318 * t404 + t332 * t407 + t338 * t410,
+                t332 * t377 - t424 + t361,
+                t318 * t435 + t332 * t437 + t338 * t440,
+                t424 - t351 + t338 * t403,
+                9.81 * t323,
+                9.81 * t354,
+                9.81 * t342,
             ],
             [
                 t25, -(gproximal_wy_leg1 * t28), t30, t25, gproximal_wy_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1), gproximal_wy_leg1,
-                t50, gproximal_wy_leg1 * t60 - minus_s_proximal_leg1 * t64,
-                gproximal_wy_leg1 * t80 + minus_s_proximal_leg1 * t38, t25 - t50,
-                -(gproximal_wy_leg1 * t94 + minus_s_proximal_leg1 * t54),
+                t48, gproximal_wy_leg1 * t54 - minus_s_proximal_leg1 * t58,
+                gproximal_wy_leg1 * t74 + minus_s_proximal_leg1 * t40, t25 - t48,
+                -(gproximal_wy_leg1 * t88 + minus_s_proximal_leg1 * t90),
                 minus_s_proximal_leg1 * minus_rate_dot_distal_leg1,
-                minus_s_proximal_leg1 * t104 - gproximal_wy_leg1 * t103, -(9.81 * c_distal_leg1),
-                -t30, rate_dot_proximal_leg2, t141, t144, rate_dot_proximal_leg2,
-                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, t159, t173,
-                t193, rate_dot_proximal_leg2 - t159, -t208, 0.0, t216, minus_s_distal_leg2 * t141,
-                -t144, t253, t253, gproximal_wy_leg3 * rate_proximal_leg3,
-                ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3), gproximal_wy_leg3,
-                t274, gproximal_wy_leg3 * t281 + minus_c_proximal_leg3 * t285,
-                gproximal_wy_leg3 * t301 - minus_c_proximal_leg3 * t261, t253 - t274,
-                gproximal_wy_leg3 * t315 + minus_c_proximal_leg3 * t277,
-                minus_c_proximal_leg3 * rate_dot_distal_leg3, minus_c_proximal_leg3 * t324,
-                minus_c_proximal_leg3 * t327, t340 * t347 + t381 - t383,
-                t371 * t391 - t340 * t398 + t359 * t403, t340 * t421 + t371 * t424 - t359 * t427,
-                t371 * t397 - t445 + t383, t340 * t452 - t371 * t454 + t359 * t457,
-                t445 - t381 + t359 * t420, t359 * t479 - t371 * t481, t340 * t481 - t359 * t488,
-                t371 * t488 - t340 * t479,
+                minus_s_proximal_leg1 * (minus_s_distal_leg1 * t31)
+                    - gproximal_wy_leg1 * t98,
+                -(9.81 * c_distal_leg1),
+                -t30,
+                rate_dot_proximal_leg2,
+                t135,
+                t138,
+                rate_dot_proximal_leg2,
+                rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2),
+                1.0,
+                t150,
+                t161,
+                t181,
+                rate_dot_proximal_leg2 - t150,
+                -t197,
+                0.0,
+                t205,
+                minus_s_distal_leg2 * t135,
+                -t138,
+                t241,
+                t241,
+                gproximal_wy_leg3 * rate_proximal_leg3,
+                ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3),
+                gproximal_wy_leg3,
+                t260,
+                minus_c_proximal_leg3 * t267 - gproximal_wy_leg3 * t263,
+                gproximal_wy_leg3 * t283 - minus_c_proximal_leg3 * t249,
+                t241 - t260,
+                gproximal_wy_leg3 * t297 + minus_c_proximal_leg3 * t299,
+                minus_c_proximal_leg3 * rate_dot_distal_leg3,
+                minus_c_proximal_leg3 * t307,
+                minus_c_proximal_leg3 * t310,
+                t323 * t330 + t364 - t366,
+                t323 * t378 + t354 * t381 + t342 * t386,
+                t323 * t404 + t354 * t407 + t342 * t410,
+                t354 * t377 - t428 + t366,
+                t323 * t435 + t354 * t437 + t342 * t440,
+                t428 - t364 + t342 * t403,
+                -(9.81 * t318),
+                -(9.81 * t332),
+                -(9.81 * t338),
             ],
             [
                 t27, -t30, t32, t27, gproximal_wz_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1), gproximal_wz_leg1,
-                t53, gproximal_wz_leg1 * t60 + minus_c_proximal_leg1 * t64,
-                gproximal_wz_leg1 * t80 - minus_c_proximal_leg1 * t38, t27 - t53,
-                minus_c_proximal_leg1 * t54 - gproximal_wz_leg1 * t94,
+                t51, gproximal_wz_leg1 * t54 + minus_c_proximal_leg1 * t58,
+                gproximal_wz_leg1 * t74 - minus_c_proximal_leg1 * t40, t27 - t51,
+                minus_c_proximal_leg1 * t90 - gproximal_wz_leg1 * t88,
                 -(minus_c_proximal_leg1 * minus_rate_dot_distal_leg1),
-                -(gproximal_wz_leg1 * t103 + minus_c_proximal_leg1 * t104), 0.0, -t32, t140, t143,
-                t145, t140, gproximal_wz_leg2 * rate_proximal_leg2,
+                -(minus_c_proximal_leg1 * t31 / minus_s_distal_leg1), 0.0, -t32, t134, t137, t139,
+                t134, gproximal_wz_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wz_leg2, rate_proximal_leg2), gproximal_wz_leg2,
-                t166, gproximal_wz_leg2 * t173 - minus_s_proximal_leg2 * t177,
-                gproximal_wz_leg2 * t193 + minus_s_proximal_leg2 * t151, t140 - t166,
-                -(gproximal_wz_leg2 * t208 + minus_s_proximal_leg2 * t167),
+                t158, gproximal_wz_leg2 * t161 - minus_s_proximal_leg2 * t165,
+                gproximal_wz_leg2 * t181 + minus_s_proximal_leg2 * t147, t134 - t158,
+                -(gproximal_wz_leg2 * t197 + minus_s_proximal_leg2 * t191),
                 minus_s_proximal_leg2 * minus_rate_dot_distal_leg2,
-                gproximal_wz_leg2 * t216 + minus_s_proximal_leg2 * t218, 0.0, -t145,
+                minus_s_proximal_leg2 * t138 / minus_s_distal_leg2, 0.0, -t139,
                 rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, -t267, t281, t301,
-                rate_dot_proximal_leg3 + t267, t315, 0.0, 0.0, 0.0, t345 * t347 + t386 - t388,
-                t374 * t391 - t345 * t398 + t364 * t403, t345 * t421 + t374 * t424 - t364 * t427,
-                t374 * t397 - t449 + t388, t345 * t452 - t374 * t454 + t364 * t457,
-                t449 - t386 + t364 * t420, 0.0, 0.0, 0.0,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, -t252, -t263, t283,
+                rate_dot_proximal_leg3 + t252, t297, 0.0, 0.0, 0.0, t328 * t330 + t369 - t371,
+                t328 * t378 + t357 * t381 + t347 * t386, t328 * t404 + t357 * t407 + t347 * t410,
+                t357 * t377 - t432 + t371, t328 * t435 + t357 * t437 + t347 * t440,
+                t432 - t369 + t347 * t403, 0.0, 0.0, 0.0,
             ],
         ])
     }
@@ -1745,7 +1681,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 580 operations (216 additions, 355 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 466 intermediates.
+    /// 511 operations (196 additions, 309 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 401 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1768,405 +1704,391 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t16 = 1.0 / c_distal_leg1;
-        let t17 = minus_s_distal_leg1 * t16;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t17;
-        let t19 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
-        let t20 = 2.0 * pose[2];
-        let t21 = pose[3] * t20;
-        let t22 = pose[0] * t0;
-        let t23 = t21 + t22;
-        let s_proximal_leg1 = t13 * (t5 * t23);
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t17;
-        let t27 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
-        let t28 = 9.81 * c_proximal_leg1;
-        let t30 = minus_gproximal_wz_leg1 * t28;
-        let t31 = 9.81 * s_proximal_leg1;
-        let t32 = minus_gproximal_wz_leg1 * t31;
-        let t33 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t34 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t40 = pose[2] * t20;
-        let t42 = 1.0 - t40 - t4;
-        let t43 = pose[3] * t0;
-        let t44 = pose[0] * t20;
-        let minus_s_distal_leg3 = t43 - t44;
-        let t47 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t47, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t47);
+        let t12 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t5 * t12;
+        let t14 = minus_s_distal_leg1 * t12;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t14;
+        let t16 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
+        let t17 = 2.0 * pose[2];
+        let t18 = pose[3] * t17;
+        let t19 = pose[0] * t0;
+        let t20 = t18 + t19;
+        let s_proximal_leg1 = t20 * t12;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t14;
+        let t23 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
+        let t24 = 9.81 * c_proximal_leg1;
+        let t25 = minus_gproximal_wy_leg1 * t24;
+        let t26 = minus_gproximal_wz_leg1 * t24;
+        let t27 = 9.81 * s_proximal_leg1;
+        let t28 = minus_gproximal_wz_leg1 * t27;
+        let t29 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t30 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t36 = t6 + t7;
+        let t37 = pose[3] * t0;
+        let t38 = pose[0] * t17;
+        let minus_s_distal_leg3 = t37 - t38;
+        let t41 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t41, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t41);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t50 = 1.0 / (t42 * c_distal_leg3);
-        let t51 = t6 + t7;
-        let s_proximal_leg3 = t50 * (t42 * t51);
-        let t54 = 1.0 / c_distal_leg3;
-        let t55 = minus_s_distal_leg3 * t54;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t55;
-        let c_proximal_leg3 = t50 * (t42 * t42);
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t55;
-        let t63 = t2 - t40;
-        let minus_s_distal_leg2 = t21 - t22;
-        let t66 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t66, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t66);
+        let t43 = 1.0 / c_distal_leg3;
+        let s_proximal_leg3 = t36 * t43;
+        let t45 = minus_s_distal_leg3 * t43;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t45;
+        let t49 = pose[2] * t17;
+        let t51 = 1.0 - t49 - t4;
+        let c_proximal_leg3 = t51 * t43;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t45;
+        let t55 = t37 + t38;
+        let minus_s_distal_leg2 = t18 - t19;
+        let t58 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t58, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t58);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t69 = 1.0 / (t63 * c_distal_leg2);
-        let t70 = t43 + t44;
-        let s_proximal_leg2 = t69 * (t70 * t63);
-        let t73 = 1.0 / c_distal_leg2;
-        let t74 = minus_s_distal_leg2 * t73;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t74;
-        let t77 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t60 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t55 * t60;
+        let t62 = minus_s_distal_leg2 * t60;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t62;
+        let t65 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t81 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t69 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t81, 1.0, "actuators")?;
-        ::overact::guard::platform(t81, 1.0, "actuators")?;
-        let t82 = 1.0 / t81;
-        let t83 = t77 * t82;
-        let t85 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t77 * t83;
-        ::overact::guard::platform(t85, 1.0, "actuators")?;
-        ::overact::guard::platform(t85, 1.0, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t88 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t90 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t92 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t93 = actuator_velocities[0] - t90 - t92;
-        let t95 = actuator_velocities[1] - t33 - t88 - t93 * t83;
-        let c_proximal_leg2 = t69 * (t63 * t63);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t74;
-        let t105 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        ::overact::guard::platform(t69, 1.0, "actuators")?;
+        ::overact::guard::platform(t69, 1.0, "actuators")?;
+        let t70 = 1.0 / t69;
+        let t71 = t65 * t70;
+        let t73 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t65 * t71;
+        ::overact::guard::platform(t73, 1.0, "actuators")?;
+        ::overact::guard::platform(t73, 1.0, "actuators")?;
+        let t74 = 1.0 / t73;
+        let t76 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t78 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t80 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t81 = actuator_velocities[0] - t78 - t80;
+        let t83 = actuator_velocities[1] - t29 - t76 - t81 * t71;
+        let t86 = t2 - t49;
+        let c_proximal_leg2 = t86 * t60;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t62;
+        let t93 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t106 = t105 * t82;
-        let t108 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t77 * t106;
-        let t109 = t108 * t86;
-        let t117 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t105 * t106
-            - t108 * t109;
-        ::overact::guard::platform(t117, 1.0, "actuators")?;
-        ::overact::guard::platform(t117, 1.0, "actuators")?;
-        let t118 = 1.0 / t117;
-        let t119 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t126 = t118
-            * (actuator_velocities[2] - (t34 + t119) - t93 * t106 - t109 * t95);
-        let t128 = t86 * t95 - t109 * t126;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t128 - c_proximal_leg1 * t126;
-        let t132 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t133 = minus_rate_distal_leg1 * t132;
-        let t134 = c_distal_leg1 * actuator_accelerations[0];
-        let t135 = t133 - t134;
-        let t137 = c_distal_leg1 * actuator_velocities[0];
-        let t138 = minus_rate_distal_leg1 * t137;
-        let t140 = c_distal_leg1 * t135 + minus_s_distal_leg1 * t138;
-        let t142 = t137 * t132;
-        let t144 = minus_gproximal_wy_leg1 * t140 + s_proximal_leg1 * t142;
-        let t147 = minus_gproximal_wz_leg1 * t140 - c_proximal_leg1 * t142;
-        let t148 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t149 = t148 + t138;
-        let t154 = c_distal_leg1 * (t138 + t149) - minus_s_distal_leg1 * (t133 + t135);
-        let t156 = t137 * t137;
-        let t157 = t132 * t132;
-        let t158 = t156 - t157;
-        let t169 = t93 * t82 - t83 * t128 - t106 * t126;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t126 - c_proximal_leg2 * t169;
-        let t174 = s_proximal_leg2 * t169 + c_proximal_leg2 * t126;
-        let t178 = minus_rate_distal_leg2 * (t74 * t174)
-            - actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t74 * t178 + t174 * minus_rate_distal_leg2;
-        let t182 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t185 = c_proximal_leg1 * t128 + s_proximal_leg1 * t126;
-        let t189 = minus_rate_distal_leg1 * (t17 * t185)
-            - actuator_velocities[0] * minus_rate_distal_leg1;
-        let minus_rate_dot_proximal_leg1 = t17 * t189 + t185 * minus_rate_distal_leg1;
-        let t193 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let rate_distal_leg3 = c_proximal_leg3 * t128 - s_proximal_leg3 * t169;
-        let t202 = c_proximal_leg3 * t169 + s_proximal_leg3 * t128;
-        let t205 = actuator_velocities[2] * rate_distal_leg3
-            - rate_distal_leg3 * (t55 * t202);
-        let minus_rate_dot_proximal_leg3 = t55 * t205 - t202 * rate_distal_leg3;
-        let t209 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t215 = t193 - minus_gproximal_wx_leg2 * t182
-            - minus_gproximal_wx_leg3 * t209;
-        let t217 = t182 - minus_gproximal_wy_leg1 * t193 - minus_gproximal_wy_leg3 * t209
-            - t83 * t215;
-        let t227 = t118
-            * (t209 - (minus_gproximal_wz_leg1 * t193 + minus_gproximal_wz_leg2 * t182)
-                - t106 * t215 - t109 * t217);
-        let t229 = t86 * t217 - t109 * t227;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t185;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t229
-            - c_proximal_leg1 * t227 + minus_rate_dot_distal_leg1;
-        let t237 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t240 = c_distal_leg1 * (t142 - minus_rate_dot_distal_leg1_2)
-            + minus_s_distal_leg1 * (t237 - t156);
-        let t254 = minus_s_distal_leg1 * (t142 + minus_rate_dot_distal_leg1_2)
-            - c_distal_leg1 * (t157 - t237);
-        let t264 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t273 = 9.81 * t5;
-        let t279 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
-        let t280 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
-        let t281 = 9.81 * s_proximal_leg2;
-        let t283 = minus_gproximal_wz_leg2 * t281;
-        let t284 = 9.81 * c_proximal_leg2;
-        let t285 = minus_gproximal_wz_leg2 * t284;
-        let t289 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t290 = minus_rate_distal_leg2 * t289;
-        let t291 = c_distal_leg2 * actuator_accelerations[1];
-        let t292 = t290 - t291;
-        let t294 = c_distal_leg2 * actuator_velocities[1];
-        let t295 = minus_rate_distal_leg2 * t294;
-        let t297 = c_distal_leg2 * t292 + minus_s_distal_leg2 * t295;
-        let t299 = t294 * t289;
-        let t301 = minus_gproximal_wx_leg2 * t297 - c_proximal_leg2 * t299;
-        let t304 = minus_gproximal_wz_leg2 * t297 + s_proximal_leg2 * t299;
-        let t305 = t294 * t294;
-        let t306 = t289 * t289;
-        let t307 = t305 - t306;
-        let t309 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t310 = t309 + t295;
-        let t315 = c_distal_leg2 * (t295 + t310) - minus_s_distal_leg2 * (t290 + t292);
-        let t326 = t82 * t215 - t83 * t229 - t106 * t227;
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t174;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t227
-            - c_proximal_leg2 * t326 + minus_rate_dot_distal_leg2;
-        let t333 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t336 = c_distal_leg2 * (t299 - minus_rate_dot_distal_leg2_2)
-            + minus_s_distal_leg2 * (t333 - t305);
-        let t350 = minus_s_distal_leg2 * (t299 + minus_rate_dot_distal_leg2_2)
-            - c_distal_leg2 * (t306 - t333);
-        let t360 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
-        let t369 = 9.81 * t70;
-        let t375 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
-        let t376 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
-        let t380 = c_distal_leg3 * actuator_velocities[2];
-        let t381 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t382 = t380 * t381;
-        let t384 = c_distal_leg3 * actuator_accelerations[2];
-        let t385 = rate_distal_leg3 * t381;
-        let t386 = t384 + t385;
-        let t388 = rate_distal_leg3 * t380;
-        let t390 = c_distal_leg3 * t386 + minus_s_distal_leg3 * t388;
-        let t392 = s_proximal_leg3 * t382 - minus_gproximal_wx_leg3 * t390;
-        let t395 = minus_gproximal_wy_leg3 * t390 + c_proximal_leg3 * t382;
-        let t398 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t399 = t388 - t398;
-        let t402 = minus_s_distal_leg3 * (t385 + t386) - c_distal_leg3 * (t388 + t399);
-        let t404 = t380 * t380;
-        let t405 = t381 * t381;
-        let t406 = t404 - t405;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t202;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t229 - s_proximal_leg3 * t326
+        let t94 = t93 * t70;
+        let t96 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t65 * t94;
+        let t97 = t96 * t74;
+        let t105 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t93 * t94
+            - t96 * t97;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        ::overact::guard::platform(t105, 1.0, "actuators")?;
+        let t106 = 1.0 / t105;
+        let t107 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t114 = t106
+            * (actuator_velocities[2] - (t30 + t107) - t81 * t94 - t97 * t83);
+        let t116 = t74 * t83 - t97 * t114;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t116 - c_proximal_leg1 * t114;
+        let t120 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t121 = minus_rate_distal_leg1 * t120;
+        let t122 = c_distal_leg1 * actuator_accelerations[0];
+        let t124 = t121 + t121 - t122;
+        let t125 = c_distal_leg1 * t124;
+        let t127 = c_distal_leg1 * actuator_velocities[0];
+        let t128 = t127 * t120;
+        let t130 = minus_gproximal_wy_leg1 * t125 + s_proximal_leg1 * t128;
+        let t133 = minus_gproximal_wz_leg1 * t125 - c_proximal_leg1 * t128;
+        let t135 = actuator_velocities[0] * minus_rate_distal_leg1;
+        let t137 = 2.0 * (minus_s_distal_leg1 * t124 - t135);
+        let t139 = t127 * t127;
+        let t140 = t120 * t120;
+        let t141 = t139 - t140;
+        let t149 = c_proximal_leg1 * t116 + s_proximal_leg1 * t114;
+        let t150 = t14 * t149;
+        let t151 = actuator_velocities[0] + t150;
+        let t154 = t55 * t151 + t86 * t114;
+        let t155 = t60 * t154;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t114 - c_proximal_leg2 * t151;
+        let t159 = t155 * minus_rate_distal_leg2;
+        let t161 = actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t62 * (t62 * t159 - t161) + t159;
+        let t165 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t167 = minus_rate_distal_leg1 * t150 - t135;
+        let minus_rate_dot_proximal_leg1 = t14 * t167 + t149 * minus_rate_distal_leg1;
+        let t171 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t116 - s_proximal_leg3 * t151;
+        let t177 = actuator_velocities[2] * rate_distal_leg3;
+        let t180 = t51 * t151 + t36 * t116;
+        let t181 = t43 * t180;
+        let t182 = t181 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t45 * (t177 - t45 * t182) - t182;
+        let t187 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t193 = t171 - minus_gproximal_wx_leg2 * t165
+            - minus_gproximal_wx_leg3 * t187;
+        let t195 = t165 - minus_gproximal_wy_leg1 * t171 - minus_gproximal_wy_leg3 * t187
+            - t71 * t193;
+        let t205 = t106
+            * (t187 - (minus_gproximal_wz_leg1 * t171 + minus_gproximal_wz_leg2 * t165)
+                - t94 * t193 - t97 * t195);
+        let t207 = t74 * t195 - t97 * t205;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t149;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t207
+            - c_proximal_leg1 * t205 + minus_rate_dot_distal_leg1;
+        let t215 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t218 = c_distal_leg1 * (t128 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t215 - t139);
+        let t232 = minus_s_distal_leg1 * (t128 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t140 - t215);
+        let t233 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t242 = minus_s_distal_leg1 * t24;
+        let t248 = 9.81 * t5;
+        let t251 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
+        let t252 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
+        let t253 = 9.81 * s_proximal_leg2;
+        let t254 = minus_gproximal_wx_leg2 * t253;
+        let t255 = minus_gproximal_wz_leg2 * t253;
+        let t256 = 9.81 * c_proximal_leg2;
+        let t257 = minus_gproximal_wz_leg2 * t256;
+        let t261 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t262 = minus_rate_distal_leg2 * t261;
+        let t263 = c_distal_leg2 * actuator_accelerations[1];
+        let t265 = t262 + t262 - t263;
+        let t266 = c_distal_leg2 * t265;
+        let t268 = c_distal_leg2 * actuator_velocities[1];
+        let t269 = t268 * t261;
+        let t271 = minus_gproximal_wx_leg2 * t266 - c_proximal_leg2 * t269;
+        let t274 = minus_gproximal_wz_leg2 * t266 + s_proximal_leg2 * t269;
+        let t275 = t268 * t268;
+        let t276 = t261 * t261;
+        let t277 = t275 - t276;
+        let t281 = 2.0 * (t161 - minus_s_distal_leg2 * t265);
+        let t290 = c_proximal_leg1 * t207 + s_proximal_leg1 * t205;
+        let t292 = t171 + t14 * t290;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t155;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t205
+            - c_proximal_leg2 * t292 + minus_rate_dot_distal_leg2;
+        let t299 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t302 = c_distal_leg2 * (t269 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t299 - t275);
+        let t316 = minus_s_distal_leg2 * (t269 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t276 - t299);
+        let t318 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t326 = minus_s_distal_leg2 * t253;
+        let t334 = 9.81 * t55;
+        let t335 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
+        let t336 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
+        let t340 = c_distal_leg3 * actuator_velocities[2];
+        let t341 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t342 = t340 * t341;
+        let t344 = rate_distal_leg3 * t341;
+        let t345 = c_distal_leg3 * actuator_accelerations[2];
+        let t347 = t344 + t345 + t344;
+        let t348 = c_distal_leg3 * t347;
+        let t350 = s_proximal_leg3 * t342 - minus_gproximal_wx_leg3 * t348;
+        let t353 = minus_gproximal_wy_leg3 * t348 + c_proximal_leg3 * t342;
+        let t356 = 2.0 * (t177 - minus_s_distal_leg3 * t347);
+        let t358 = t340 * t340;
+        let t359 = t341 * t341;
+        let t360 = t358 - t359;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t181;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t207 - s_proximal_leg3 * t292
             - minus_rate_dot_distal_leg3;
-        let t419 = rate_distal_leg3 * rate_distal_leg3;
-        let t422 = c_distal_leg3 * (t382 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t419 - t404);
-        let t437 = minus_s_distal_leg3 * (t382 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t405 - t419);
-        let rate_dot_wrist_leg3 = t54
-            * (c_proximal_leg3 * t326 + s_proximal_leg3 * t229 + t205);
-        let t456 = rate_dot_wrist_leg3 - t399;
-        let rate_wrist_leg2 = t73 * t174;
-        let t459 = t289 + rate_wrist_leg2;
-        let rate_wrist_leg3 = t54 * t202;
-        let t461 = t381 + rate_wrist_leg3;
-        let t462 = t459 * t461;
-        let t463 = minus_s_distal_leg1 * t462;
-        let rate_wrist_leg1 = t16 * t185;
-        let t466 = t132 + rate_wrist_leg1;
-        let t467 = t466 * t461;
-        let t468 = t70 * t467;
-        let t471 = t5 * t462;
-        let t473 = minus_s_distal_leg2 * t467;
-        let t476 = t23 * t462;
-        let t478 = t63 * t467;
-        let t480 = t466 * t459;
-        let t481 = t480 + t456;
-        let rate_dot_wrist_leg1 = t16
-            * (c_proximal_leg1 * t229 + s_proximal_leg1 * t227 + t189);
-        let t488 = t149 + rate_dot_wrist_leg1;
-        let t489 = t462 - t488;
-        let t492 = t461 * t461;
-        let t493 = t466 * t466;
-        let t494 = t492 - t493;
-        let rate_dot_wrist_leg2 = t73
-            * (s_proximal_leg2 * t326 + c_proximal_leg2 * t227 + t178);
-        let t512 = t310 + rate_dot_wrist_leg2;
-        let t513 = t467 + t512;
-        let t515 = t459 * t459;
-        let t516 = t515 - t492;
-        let t519 = t480 - t456;
-        let t533 = t42 * t480;
-        let t537 = t51 * t480;
-        let t541 = minus_s_distal_leg3 * t480;
-        let t544 = t493 - t515;
-        let t546 = t467 - t512;
-        let t549 = t462 + t488;
-        let t571 = 9.81 * t23;
-        let t573 = 9.81 * t63;
-        let t580 = 9.81 * minus_s_distal_leg3;
+        let t373 = rate_distal_leg3 * rate_distal_leg3;
+        let t376 = c_distal_leg3 * (t342 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t373 - t358);
+        let t386 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t392 = minus_s_distal_leg3 * (t342 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t359 - t373);
+        let t400 = 9.81 * t36;
+        let t402 = 9.81 * t51;
+        let t408 = t51 * t292 + t36 * t207 + minus_s_distal_leg3 * t205;
+        let t411 = t180 + minus_s_distal_leg3 * t114;
+        let t413 = minus_s_distal_leg2 * t116 + t154;
+        let t414 = t411 * t413;
+        let t415 = minus_s_distal_leg1 * t414;
+        let rate_wrist_leg1 = t12 * t149;
+        let t418 = t120 + rate_wrist_leg1;
+        let t419 = t418 * t411;
+        let t420 = t55 * t419;
+        let t423 = t5 * t414;
+        let t425 = minus_s_distal_leg2 * t419;
+        let t428 = t20 * t414;
+        let t430 = t86 * t419;
+        let rate_dot_wrist_leg1 = t12 * (t290 + t167);
+        let t436 = t233 + minus_rate_distal_leg1 * t127 + rate_dot_wrist_leg1;
+        let t437 = t436 - t414;
+        let t439 = t418 * t413;
+        let t440 = t408 + t439;
+        let t443 = t411 * t411;
+        let t444 = t418 * t418;
+        let t445 = t443 - t444;
+        let t462 = t55 * t292 + minus_s_distal_leg2 * t207 + t86 * t205;
+        let t463 = t462 + t419;
+        let t465 = t413 * t413;
+        let t466 = t465 - t443;
+        let t469 = t408 - t439;
+        let t483 = t51 * t439;
+        let t487 = t36 * t439;
+        let t491 = minus_s_distal_leg3 * t439;
+        let t494 = t444 - t465;
+        let t496 = t462 - t419;
+        let t499 = t436 + t414;
         Ok([
             [
-                actuator_accelerations[0], -t28, t31, actuator_accelerations[0],
-                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t140,
-                t154, -t240, actuator_accelerations[0] + t140, t254, 0.0, t264, -t273, -t31, -t279,
-                -(minus_gproximal_wx_leg2 * t281), -t283, -t279, -t90,
+                actuator_accelerations[0], -t24, t27, actuator_accelerations[0],
+                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t125,
+                -t137, -t218, actuator_accelerations[0] + t125, t232, 0.0, t242, -t248, -t27, -t251,
+                -t254, -t255, -t251, -t78,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wx_leg2,
-                t301,
-                c_proximal_leg2 * t307 - minus_gproximal_wx_leg2 * t315,
-                minus_gproximal_wx_leg2 * t336 - c_proximal_leg2 * t291,
-                -(t279 + t301),
-                -(minus_gproximal_wx_leg2 * t350 + c_proximal_leg2 * t309),
+                t271,
+                c_proximal_leg2 * t277 - minus_gproximal_wx_leg2 * t281,
+                minus_gproximal_wx_leg2 * t302 - c_proximal_leg2 * t263,
+                -(t251 + t271),
+                -(minus_gproximal_wx_leg2 * t316 + c_proximal_leg2 * t318),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2_2),
-                minus_gproximal_wx_leg2 * t360 - 9.81 * (t63 * c_proximal_leg2),
-                -(minus_gproximal_wx_leg2 * t369
-                    + c_proximal_leg2
-                        * (9.81 * (minus_s_distal_leg2 * c_proximal_leg2))),
-                t283,
-                -t375,
-                -t375,
-                -t92,
+                minus_gproximal_wx_leg2 * t326 - t86 * t256,
+                -(c_distal_leg2 * (t254 + t257)),
+                t255,
+                -t335,
+                -t335,
+                -t80,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wx_leg3,
-                t392,
-                -(minus_gproximal_wx_leg3 * t402 + s_proximal_leg3 * t406),
-                minus_gproximal_wx_leg3 * t422 + s_proximal_leg3 * t384,
-                -(t375 + t392),
-                s_proximal_leg3 * t398 - minus_gproximal_wx_leg3 * t437,
+                t350,
+                -(s_proximal_leg3 * t360 - minus_gproximal_wx_leg3 * t356),
+                minus_gproximal_wx_leg3 * t376 + s_proximal_leg3 * t345,
+                -(t335 + t350),
+                s_proximal_leg3 * t386 - minus_gproximal_wx_leg3 * t392,
                 -(s_proximal_leg3 * rate_dot_distal_leg3),
-                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
-                -(9.81 * t51),
-                t42 * t456 + t463 - t468,
-                minus_s_distal_leg1 * t481 - t42 * t489 + t70 * t494,
-                t42 * t513 + minus_s_distal_leg1 * t516 - t70 * t519,
-                minus_s_distal_leg1 * t488 - t533 + t468,
-                t42 * t544 - minus_s_distal_leg1 * t546 + t70 * t549,
-                t533 - t463 + t70 * t512,
-                t70 * t571 - minus_s_distal_leg1 * t573,
-                t42 * t573 - t70 * t580,
-                minus_s_distal_leg1 * t580 - t42 * t571,
+                t45 * t400,
+                -t400,
+                t51 * t408 + t415 - t420,
+                t51 * t437 + minus_s_distal_leg1 * t440 + t55 * t445,
+                t51 * t463 + minus_s_distal_leg1 * t466 + t55 * t469,
+                minus_s_distal_leg1 * t436 - t483 + t420,
+                t51 * t494 + minus_s_distal_leg1 * t496 + t55 * t499,
+                t483 - t415 + t55 * t462,
+                t400,
+                t248,
+                9.81 * minus_s_distal_leg2,
             ],
             [
-                -t19, minus_gproximal_wy_leg1 * t28, -t30, -t19, -t33,
+                -t16, t25, -t26, -t16, -t29,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wy_leg1,
-                t144,
-                -(minus_gproximal_wy_leg1 * t154 + s_proximal_leg1 * t158),
-                minus_gproximal_wy_leg1 * t240 + s_proximal_leg1 * t134,
-                -(t19 + t144),
-                s_proximal_leg1 * t148 - minus_gproximal_wy_leg1 * t254,
+                t130,
+                -(s_proximal_leg1 * t141 - minus_gproximal_wy_leg1 * t137),
+                minus_gproximal_wy_leg1 * t218 + s_proximal_leg1 * t122,
+                -(t16 + t130),
+                s_proximal_leg1 * t233 - minus_gproximal_wy_leg1 * t232,
                 s_proximal_leg1 * minus_rate_dot_distal_leg1_2,
-                9.81 * (t23 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t264,
-                minus_gproximal_wy_leg1 * t273
-                    + s_proximal_leg1 * (9.81 * (minus_s_distal_leg1 * s_proximal_leg1)),
-                t30,
+                t20 * t27 - minus_gproximal_wy_leg1 * t242,
+                c_distal_leg1 * (t25 + t28),
+                t26,
                 actuator_accelerations[1],
-                t281,
-                t284,
+                t253,
+                t256,
                 actuator_accelerations[1],
                 actuator_velocities[1],
                 ::overact::math::sign(actuator_velocities[1]),
                 1.0,
-                -t297,
-                t315,
-                -t336,
-                actuator_accelerations[1] + t297,
-                t350,
+                -t266,
+                t281,
+                -t302,
+                actuator_accelerations[1] + t266,
+                t316,
                 0.0,
-                -t360,
-                t369,
-                -t284,
-                -t376,
-                -t376,
-                -t88,
+                -t326,
+                t334,
+                -t256,
+                -t336,
+                -t336,
+                -t76,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wy_leg3,
-                -t395,
-                c_proximal_leg3 * t406 - minus_gproximal_wy_leg3 * t402,
-                minus_gproximal_wy_leg3 * t422 - c_proximal_leg3 * t384,
-                t395 - t376,
-                -(minus_gproximal_wy_leg3 * t437 + c_proximal_leg3 * t398),
+                -t353,
+                c_proximal_leg3 * t360 + minus_gproximal_wy_leg3 * t356,
+                minus_gproximal_wy_leg3 * t376 - c_proximal_leg3 * t345,
+                t353 - t336,
+                -(minus_gproximal_wy_leg3 * t392 + c_proximal_leg3 * t386),
                 c_proximal_leg3 * rate_dot_distal_leg3,
-                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
-                9.81 * t42,
-                t51 * t456 + t471 - t473,
-                t5 * t481 - t51 * t489 + minus_s_distal_leg2 * t494,
-                t51 * t513 + t5 * t516 - minus_s_distal_leg2 * t519,
-                t5 * t488 - t537 + t473,
-                t51 * t544 - t5 * t546 + minus_s_distal_leg2 * t549,
-                t537 - t471 + minus_s_distal_leg2 * t512,
-                minus_s_distal_leg2 * t571 - t5 * t573,
-                t51 * t573 - minus_s_distal_leg2 * t580,
-                t5 * t580 - t51 * t571,
+                -(t45 * t402),
+                t402,
+                t36 * t408 + t423 - t425,
+                t36 * t437 + t5 * t440 + minus_s_distal_leg2 * t445,
+                t36 * t463 + t5 * t466 + minus_s_distal_leg2 * t469,
+                t5 * t436 - t487 + t425,
+                t36 * t494 + t5 * t496 + minus_s_distal_leg2 * t499,
+                t487 - t423 + minus_s_distal_leg2 * t462,
+                -t402,
+                -(9.81 * minus_s_distal_leg1),
+                -t334,
             ],
             [
-                -t27, t30, -t32, -t27, -t34,
+                -t23, t26, -t28, -t23, -t30,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wz_leg1,
-                t147,
-                c_proximal_leg1 * t158 - minus_gproximal_wz_leg1 * t154,
-                minus_gproximal_wz_leg1 * t240 - c_proximal_leg1 * t134,
-                -(t27 + t147),
-                -(minus_gproximal_wz_leg1 * t254 + c_proximal_leg1 * t148),
+                t133,
+                c_proximal_leg1 * t141 + minus_gproximal_wz_leg1 * t137,
+                minus_gproximal_wz_leg1 * t218 - c_proximal_leg1 * t122,
+                -(t23 + t133),
+                -(minus_gproximal_wz_leg1 * t232 + c_proximal_leg1 * t233),
                 -(c_proximal_leg1 * minus_rate_dot_distal_leg1_2),
-                -(minus_gproximal_wz_leg1 * t264 + 9.81 * (t5 * s_proximal_leg1)),
+                -(t12 * (c_proximal_leg1 * t27)),
                 0.0,
-                t32,
-                -t280,
-                -t283,
-                -t285,
-                -t280,
-                -t119,
+                t28,
+                -t252,
+                -t255,
+                -t257,
+                -t252,
+                -t107,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wz_leg2,
-                t304,
-                -(minus_gproximal_wz_leg2 * t315 + s_proximal_leg2 * t307),
-                minus_gproximal_wz_leg2 * t336 + s_proximal_leg2 * t291,
-                -(t280 + t304),
-                s_proximal_leg2 * t309 - minus_gproximal_wz_leg2 * t350,
+                t274,
+                -(minus_gproximal_wz_leg2 * t281 + s_proximal_leg2 * t277),
+                minus_gproximal_wz_leg2 * t302 + s_proximal_leg2 * t263,
+                -(t252 + t274),
+                s_proximal_leg2 * t318 - minus_gproximal_wz_leg2 * t316,
                 s_proximal_leg2 * minus_rate_dot_distal_leg2_2,
-                minus_gproximal_wz_leg2 * t360 + 9.81 * (t70 * c_proximal_leg2),
+                t256 * (s_proximal_leg2 * t60),
                 0.0,
-                t285,
+                t257,
                 actuator_accelerations[2],
                 actuator_accelerations[2],
                 actuator_velocities[2],
                 ::overact::math::sign(actuator_velocities[2]),
                 1.0,
-                t390,
-                t402,
-                -t422,
-                actuator_accelerations[2] - t390,
-                t437,
+                t348,
+                -t356,
+                -t376,
+                actuator_accelerations[2] - t348,
+                t392,
                 0.0,
                 0.0,
                 0.0,
-                minus_s_distal_leg3 * t456 + t476 - t478,
-                t23 * t481 - minus_s_distal_leg3 * t489 + t63 * t494,
-                minus_s_distal_leg3 * t513 + t23 * t516 - t63 * t519,
-                t23 * t488 - t541 + t478,
-                minus_s_distal_leg3 * t544 - t23 * t546 + t63 * t549,
-                t541 - t476 + t63 * t512,
+                minus_s_distal_leg3 * t408 + t428 - t430,
+                minus_s_distal_leg3 * t437 + t20 * t440 + t86 * t445,
+                minus_s_distal_leg3 * t463 + t20 * t466 + t86 * t469,
+                t20 * t436 - t491 + t430,
+                minus_s_distal_leg3 * t494 + t20 * t496 + t86 * t499,
+                t491 - t428 + t86 * t462,
                 0.0,
                 0.0,
                 0.0,
@@ -2183,7 +2105,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 626 operations (224 additions, 395 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 526 intermediates.
+    /// 587 operations (214 additions, 369 multiplications, 4 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 490 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2204,244 +2126,240 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t13 * (t5 * t20);
-        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t12 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t5 * t12;
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let t18 = t16 + t17;
+        let s_proximal_leg1 = t18 * t12;
+        let t21 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t30 = 1.0 / c_distal_leg1;
-        let t31 = minus_s_distal_leg1 * t30;
-        let t35 = t31 * t24;
-        let rate_proximal_leg1 = twist[0] - t35;
-        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
-            - t31 * t40;
-        let t44 = 9.81 * s_proximal_leg1;
-        let t46 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t47 = minus_rate_distal_leg1 * t46;
-        let t48 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t49 = t47 - t48;
-        let t51 = c_distal_leg1 * rate_proximal_leg1;
-        let t52 = minus_rate_distal_leg1 * t51;
-        let t55 = pose[2] * t17;
-        let t56 = t2 - t55;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t59 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t59, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t59);
+        let t27 = minus_s_distal_leg1 * t12;
+        let t31 = t27 * t21;
+        let rate_proximal_leg1 = twist[0] - t31;
+        let t36 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t31 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t21 * minus_rate_distal_leg1
+            - t27 * t36;
+        let t39 = 9.81 * c_proximal_leg1;
+        let t40 = 9.81 * s_proximal_leg1;
+        let t42 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t43 = minus_rate_distal_leg1 * t42;
+        let t44 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t46 = t43 + t43 - t44;
+        let t48 = pose[3] * t0;
+        let t49 = pose[0] * t15;
+        let t50 = t48 + t49;
+        let minus_s_distal_leg2 = t16 - t17;
+        let t53 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t53, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t53);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t62 = 1.0 / (t56 * c_distal_leg2);
-        let t63 = pose[3] * t0;
-        let t64 = pose[0] * t17;
-        let t65 = t63 + t64;
-        let s_proximal_leg2 = t62 * (t65 * t56);
-        let t68 = 1.0 / c_distal_leg2;
-        let t69 = minus_s_distal_leg2 * t68;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t69;
-        let t72 = 1.0 - t55 - t4;
-        let minus_s_distal_leg3 = t63 - t64;
-        let t75 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t75, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t75);
+        let t55 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t50 * t55;
+        let t57 = minus_s_distal_leg2 * t55;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t57;
+        let t59 = t6 + t7;
+        let minus_s_distal_leg3 = t48 - t49;
+        let t62 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t62, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t78 = 1.0 / (t72 * c_distal_leg3);
-        let t79 = t6 + t7;
-        let s_proximal_leg3 = t78 * (t72 * t79);
-        let t82 = 1.0 / c_distal_leg3;
-        let t83 = minus_s_distal_leg3 * t82;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t83;
-        let c_proximal_leg3 = t78 * (t72 * t72);
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t83;
-        let t89 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+        let t64 = 1.0 / c_distal_leg3;
+        let s_proximal_leg3 = t59 * t64;
+        let t66 = minus_s_distal_leg3 * t64;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t66;
+        let t69 = pose[2] * t15;
+        let t71 = 1.0 - t69 - t4;
+        let c_proximal_leg3 = t71 * t64;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t66;
+        let t74 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let c_proximal_leg2 = t62 * (t56 * t56);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t69;
-        let t94 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t31;
-        let t97 = minus_gproximal_wx_leg2
+        let t75 = t2 - t69;
+        let c_proximal_leg2 = t75 * t55;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t57;
+        let t79 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t27;
+        let t82 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t31;
-        let t102 = t94 - minus_gproximal_wy_leg1 * t97 - minus_gproximal_wz_leg1 * t89;
-        ::overact::guard::platform(t102, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t102, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t102, 1.0, "kept actuators")?;
-        let t103 = 1.0 / t102;
-        let t104 = t89 * t103;
-        let t106 = t97 * t103;
-        let t108 = c_proximal_leg1 * t104 - s_proximal_leg1 * t106;
-        let t109 = t51 * t46;
-        let t111 = c_distal_leg1 * t49 + minus_s_distal_leg1 * t52 + t108 * t109;
-        let t114 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t103;
-        let t118 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t103;
-        let t120 = c_proximal_leg1 * t114 - s_proximal_leg1 * t118;
-        let t121 = t120 * t109;
-        let t124 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t103;
-        let t128 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t103;
-        let t130 = c_proximal_leg1 * t124 - s_proximal_leg1 * t128;
-        let t131 = t130 * t109;
-        let t132 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t133 = t132 + t52;
-        let t139 = t51 * t51;
-        let t140 = t46 * t46;
-        let t141 = t139 - t140;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t27;
+        let t87 = t79 - minus_gproximal_wy_leg1 * t82 - minus_gproximal_wz_leg1 * t74;
+        ::overact::guard::platform(t87, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t87, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t87, 1.0, "kept actuators")?;
+        let t88 = 1.0 / t87;
+        let t89 = t74 * t88;
+        let t91 = t82 * t88;
+        let t93 = c_proximal_leg1 * t89 - s_proximal_leg1 * t91;
+        let t94 = c_distal_leg1 * rate_proximal_leg1;
+        let t95 = t94 * t42;
+        let t97 = c_distal_leg1 * t46 + t93 * t95;
+        let t100 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t88;
+        let t104 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t88;
+        let t106 = c_proximal_leg1 * t100 - s_proximal_leg1 * t104;
+        let t107 = t106 * t95;
+        let t110 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t88;
+        let t114 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t88;
+        let t116 = c_proximal_leg1 * t110 - s_proximal_leg1 * t114;
+        let t117 = t116 * t95;
+        let t118 = minus_rate_distal_leg1 * t94;
+        let t119 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t120 = t119 + t118;
+        let t125 = t94 * t94;
+        let t126 = t42 * t42;
+        let t127 = t125 - t126;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
-        let t153 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t176 = 9.81 * t20;
-        let t183 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t190 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+            - c_proximal_leg1 * acceleration[2] + t21 * rate_proximal_leg1;
+        let t139 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t161 = 9.81 * t18;
+        let t166 = 9.81 * t5;
+        let t167 = minus_s_distal_leg1 * t40;
+        let t174 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t199 = t69 * t190;
-        let rate_proximal_leg2 = twist[1] - t199;
-        let t204 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t199
-            - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t190 * minus_rate_distal_leg2
-            - t69 * t204;
-        let t208 = 9.81 * c_proximal_leg2;
-        let t210 = t94 * t103;
-        let t213 = c_proximal_leg2 * t210 - s_proximal_leg2 * t104;
-        let t214 = c_distal_leg2 * rate_proximal_leg2;
-        let t215 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t216 = t214 * t215;
-        let t217 = t213 * t216;
-        let t218 = minus_rate_distal_leg2 * t215;
-        let t219 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t220 = t218 - t219;
-        let t222 = minus_rate_distal_leg2 * t214;
-        let t227 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t103;
-        let t230 = c_proximal_leg2 * t227 - s_proximal_leg2 * t114;
-        let t232 = c_distal_leg2 * t220 + minus_s_distal_leg2 * t222 + t230 * t216;
-        let t235 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t103;
-        let t238 = c_proximal_leg2 * t235 - s_proximal_leg2 * t124;
-        let t239 = t238 * t216;
-        let t240 = t214 * t214;
-        let t241 = t215 * t215;
-        let t242 = t240 - t241;
-        let t244 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t245 = t244 + t222;
+        let t183 = t57 * t174;
+        let rate_proximal_leg2 = twist[1] - t183;
+        let rate_dot_proximal_leg2 = acceleration[1] - t174 * minus_rate_distal_leg2
+            - t57
+                * (s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+                    + minus_rate_distal_leg2 * t183
+                    - minus_rate_distal_leg2 * rate_proximal_leg2);
+        let t191 = 9.81 * s_proximal_leg2;
+        let t192 = 9.81 * c_proximal_leg2;
+        let t194 = t79 * t88;
+        let t197 = c_proximal_leg2 * t194 - s_proximal_leg2 * t89;
+        let t198 = c_distal_leg2 * rate_proximal_leg2;
+        let t199 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t200 = t198 * t199;
+        let t201 = t197 * t200;
+        let t202 = minus_rate_distal_leg2 * t199;
+        let t203 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t205 = t202 + t202 - t203;
+        let t209 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t88;
+        let t212 = c_proximal_leg2 * t209 - s_proximal_leg2 * t100;
+        let t214 = c_distal_leg2 * t205 + t212 * t200;
+        let t217 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t88;
+        let t220 = c_proximal_leg2 * t217 - s_proximal_leg2 * t110;
+        let t221 = t220 * t200;
+        let t222 = t198 * t198;
+        let t223 = t199 * t199;
+        let t224 = t222 - t223;
+        let t226 = minus_rate_distal_leg2 * t198;
+        let t227 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t190 * rate_proximal_leg2;
-        let t262 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t282 = 9.81 * t56;
-        let t290 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t298 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+            - c_proximal_leg2 * acceleration[0] + t174 * rate_proximal_leg2;
+        let t244 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t264 = 9.81 * t75;
+        let t270 = minus_s_distal_leg2 * t192;
+        let t272 = 9.81 * t50;
+        let t278 = t71 * twist[0] + t59 * twist[1];
+        let t279 = t64 * t278;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t307 = t83 * t298;
-        let rate_proximal_leg3 = twist[2] - t307;
-        let t312 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t307;
-        let rate_dot_proximal_leg3 = acceleration[2] + t298 * rate_distal_leg3
-            - t83 * t312;
-        let t318 = c_proximal_leg3 * t106 - s_proximal_leg3 * t210;
-        let t319 = c_distal_leg3 * rate_proximal_leg3;
-        let t320 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t321 = t319 * t320;
-        let t322 = t318 * t321;
-        let t325 = c_proximal_leg3 * t118 - s_proximal_leg3 * t227;
-        let t326 = t325 * t321;
-        let t327 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t328 = rate_distal_leg3 * t320;
-        let t329 = t327 + t328;
-        let t331 = rate_distal_leg3 * t319;
-        let t336 = c_proximal_leg3 * t128 - s_proximal_leg3 * t235;
-        let t338 = c_distal_leg3 * t329 + minus_s_distal_leg3 * t331 - t336 * t321;
-        let t339 = t319 * t319;
-        let t340 = t320 * t320;
-        let t341 = t339 - t340;
-        let t346 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t347 = t331 - t346;
+        let t287 = t71 * acceleration[0] + t59 * acceleration[1];
+        let t289 = t66 * t279;
+        let rate_proximal_leg3 = twist[2] - t289;
+        let rate_dot_proximal_leg3 = acceleration[2] + t279 * rate_distal_leg3
+            - t66
+                * (t64 * t287 + rate_distal_leg3 * rate_proximal_leg3
+                    - rate_distal_leg3 * t289);
+        let t300 = c_proximal_leg3 * t91 - s_proximal_leg3 * t194;
+        let t301 = c_distal_leg3 * rate_proximal_leg3;
+        let t302 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t303 = t301 * t302;
+        let t304 = t300 * t303;
+        let t307 = c_proximal_leg3 * t104 - s_proximal_leg3 * t209;
+        let t308 = t307 * t303;
+        let t309 = rate_distal_leg3 * t302;
+        let t310 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t312 = t309 + t310 + t309;
+        let t316 = c_proximal_leg3 * t114 - s_proximal_leg3 * t217;
+        let t318 = c_distal_leg3 * t312 - t316 * t303;
+        let t319 = t301 * t301;
+        let t320 = t302 * t302;
+        let t321 = t319 - t320;
+        let t325 = rate_distal_leg3 * t301;
+        let t326 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t298 * rate_proximal_leg3;
-        let t362 = rate_distal_leg3 * rate_distal_leg3;
-        let t381 = 9.81 * minus_s_distal_leg3;
-        let t385 = 9.81 * c_distal_leg3;
-        let rate_dot_wrist_leg3 = t82 * t312;
-        let t390 = rate_dot_wrist_leg3 - t347;
-        let rate_wrist_leg2 = t68 * t190;
-        let t393 = t215 + rate_wrist_leg2;
-        let rate_wrist_leg3 = t82 * t298;
-        let t395 = t320 + rate_wrist_leg3;
-        let t396 = t393 * t395;
-        let t397 = minus_s_distal_leg1 * t396;
-        let rate_wrist_leg1 = t30 * t24;
-        let t400 = t46 + rate_wrist_leg1;
-        let t401 = t400 * t395;
-        let t402 = t65 * t401;
-        let t403 = t72 * t390 + t397 - t402;
-        let t406 = t5 * t396;
-        let t408 = minus_s_distal_leg2 * t401;
-        let t409 = t79 * t390 + t406 - t408;
-        let t413 = t20 * t396;
-        let t415 = t56 * t401;
-        let t416 = minus_s_distal_leg3 * t390 + t413 - t415;
-        let t429 = t400 * t393;
-        let t430 = t429 + t390;
-        let rate_dot_wrist_leg1 = t30 * t40;
-        let t433 = t133 + rate_dot_wrist_leg1;
-        let t434 = t396 - t433;
-        let t437 = t395 * t395;
-        let t438 = t400 * t400;
-        let t439 = t437 - t438;
-        let t441 = minus_s_distal_leg1 * t430 - t72 * t434 + t65 * t439;
-        let t447 = t5 * t430 - t79 * t434 + minus_s_distal_leg2 * t439;
-        let t454 = t20 * t430 - minus_s_distal_leg3 * t434 + t56 * t439;
-        let rate_dot_wrist_leg2 = t68 * t204;
-        let t468 = t245 + rate_dot_wrist_leg2;
-        let t469 = t401 + t468;
-        let t471 = t393 * t393;
-        let t472 = t471 - t437;
-        let t475 = t429 - t390;
-        let t477 = t72 * t469 + minus_s_distal_leg1 * t472 - t65 * t475;
-        let t483 = t79 * t469 + t5 * t472 - minus_s_distal_leg2 * t475;
-        let t490 = minus_s_distal_leg3 * t469 + t20 * t472 - t56 * t475;
-        let t504 = t72 * t429;
-        let t506 = minus_s_distal_leg1 * t433 - t504 + t402;
-        let t509 = t79 * t429;
-        let t511 = t5 * t433 - t509 + t408;
-        let t515 = minus_s_distal_leg3 * t429;
-        let t517 = t20 * t433 - t515 + t415;
-        let t530 = t438 - t471;
-        let t532 = t401 - t468;
-        let t535 = t396 + t433;
-        let t537 = t72 * t530 - minus_s_distal_leg1 * t532 + t65 * t535;
-        let t543 = t79 * t530 - t5 * t532 + minus_s_distal_leg2 * t535;
-        let t550 = minus_s_distal_leg3 * t530 - t20 * t532 + t56 * t535;
-        let t565 = t504 - t397 + t65 * t468;
-        let t569 = t509 - t406 + minus_s_distal_leg2 * t468;
-        let t574 = t515 - t413 + t56 * t468;
-        let t589 = t65 * t176 - minus_s_distal_leg1 * t282;
-        let t593 = minus_s_distal_leg2 * t176 - t5 * t282;
-        let t604 = t72 * t282 - t65 * t381;
-        let t608 = t79 * t282 - minus_s_distal_leg2 * t381;
-        let t619 = minus_s_distal_leg1 * t381 - t72 * t176;
-        let t623 = t5 * t381 - t79 * t176;
+            - s_proximal_leg3 * acceleration[0] - t279 * rate_proximal_leg3;
+        let t342 = rate_distal_leg3 * rate_distal_leg3;
+        let t361 = 9.81 * minus_s_distal_leg3;
+        let t365 = 9.81 * c_distal_leg3;
+        let t366 = t300 * t365;
+        let t367 = t307 * t365;
+        let t368 = t316 * t365;
+        let t370 = t287 + minus_s_distal_leg3 * acceleration[2];
+        let t373 = t278 + minus_s_distal_leg3 * twist[2];
+        let t378 = t50 * twist[0] + minus_s_distal_leg2 * twist[1] + t75 * twist[2];
+        let t379 = t373 * t378;
+        let t380 = minus_s_distal_leg1 * t379;
+        let rate_wrist_leg1 = t12 * t21;
+        let t383 = t42 + rate_wrist_leg1;
+        let t384 = t383 * t373;
+        let t385 = t50 * t384;
+        let t386 = t71 * t370 + t380 - t385;
+        let t389 = t5 * t379;
+        let t391 = minus_s_distal_leg2 * t384;
+        let t392 = t59 * t370 + t389 - t391;
+        let t396 = t18 * t379;
+        let t398 = t75 * t384;
+        let t399 = minus_s_distal_leg3 * t370 + t396 - t398;
+        let rate_dot_wrist_leg1 = t12 * t36;
+        let t413 = t120 + rate_dot_wrist_leg1;
+        let t414 = t413 - t379;
+        let t416 = t383 * t378;
+        let t417 = t370 + t416;
+        let t420 = t373 * t373;
+        let t421 = t383 * t383;
+        let t422 = t420 - t421;
+        let t424 = t71 * t414 + minus_s_distal_leg1 * t417 + t50 * t422;
+        let t430 = t59 * t414 + t5 * t417 + minus_s_distal_leg2 * t422;
+        let t437 = minus_s_distal_leg3 * t414 + t18 * t417 + t75 * t422;
+        let t454 = t50 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t75 * acceleration[2];
+        let t455 = t454 + t384;
+        let t457 = t378 * t378;
+        let t458 = t457 - t420;
+        let t461 = t370 - t416;
+        let t463 = t71 * t455 + minus_s_distal_leg1 * t458 + t50 * t461;
+        let t469 = t59 * t455 + t5 * t458 + minus_s_distal_leg2 * t461;
+        let t476 = minus_s_distal_leg3 * t455 + t18 * t458 + t75 * t461;
+        let t490 = t71 * t416;
+        let t492 = minus_s_distal_leg1 * t413 - t490 + t385;
+        let t495 = t59 * t416;
+        let t497 = t5 * t413 - t495 + t391;
+        let t501 = minus_s_distal_leg3 * t416;
+        let t503 = t18 * t413 - t501 + t398;
+        let t516 = t421 - t457;
+        let t518 = t454 - t384;
+        let t521 = t413 + t379;
+        let t523 = t71 * t516 + minus_s_distal_leg1 * t518 + t50 * t521;
+        let t529 = t59 * t516 + t5 * t518 + minus_s_distal_leg2 * t521;
+        let t536 = minus_s_distal_leg3 * t516 + t18 * t518 + t75 * t521;
+        let t551 = t490 - t380 + t50 * t454;
+        let t555 = t495 - t389 + minus_s_distal_leg2 * t454;
+        let t560 = t501 - t396 + t75 * t454;
+        let t574 = 9.81 * minus_s_distal_leg1;
+        let t583 = 9.81 * minus_s_distal_leg2;
         Ok([
             [
-                rate_dot_proximal_leg1, -(9.81 * c_proximal_leg1), t44, rate_dot_proximal_leg1,
-                rate_proximal_leg1, ::overact::math::sign(rate_proximal_leg1), 1.0, -t111,
-                c_distal_leg1 * (t52 + t133) - minus_s_distal_leg1 * (t47 + t49)
-                    + t108 * t141,
-                -(c_distal_leg1 * (t109 - minus_rate_dot_distal_leg1)
-                    + minus_s_distal_leg1 * (t153 - t139) + t108 * t48),
-                rate_dot_proximal_leg1 + t111,
-                minus_s_distal_leg1 * (t109 + minus_rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t140 - t153) - t108 * t132,
-                -(t108 * minus_rate_dot_distal_leg1),
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t108 * t176,
-                -(9.81 * t5 + t108 * t183),
-                -t44,
+                rate_dot_proximal_leg1, -t39, t40, rate_dot_proximal_leg1, rate_proximal_leg1,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, -t97,
+                c_distal_leg1 * (t118 + t120) - minus_s_distal_leg1 * t46 + t93 * t127,
+                -(c_distal_leg1 * (t95 - minus_rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t139 - t125) + t93 * t44),
+                rate_dot_proximal_leg1 + t97,
+                minus_s_distal_leg1 * (t95 + minus_rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t126 - t139) - t93 * t119,
+                -(t93 * minus_rate_dot_distal_leg1),
+                minus_s_distal_leg1 * t39 - t93 * t161,
+                -(t166 + t93 * t167),
+                -t40,
                 0.0,
                 0.0,
                 0.0,
@@ -2449,104 +2367,103 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t217,
-                t213 * t242,
-                -(t213 * t219),
-                t217,
-                -(t213 * t244),
-                -(t213 * minus_rate_dot_distal_leg2),
-                -(t213 * t282),
-                -(t213 * t290),
+                -t201,
+                t197 * t224,
+                -(t197 * t203),
+                t201,
+                -(t197 * t227),
+                -(t197 * minus_rate_dot_distal_leg2),
+                -(t197 * t264),
+                -(t197 * t270),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t322,
-                t318 * t341,
-                -(t318 * t327),
-                t322,
-                -(t318 * t346),
-                t318 * rate_dot_distal_leg3,
-                -(t318 * t381),
-                t318 * t385,
-                t210 * t403 + t106 * t409 + t104 * t416,
-                t210 * t441 + t106 * t447 + t104 * t454,
-                t210 * t477 + t106 * t483 + t104 * t490,
-                t210 * t506 + t106 * t511 + t104 * t517,
-                t210 * t537 + t106 * t543 + t104 * t550,
-                t210 * t565 + t106 * t569 + t104 * t574,
-                t210 * t589 + t106 * t593,
-                t210 * t604 + t106 * t608,
-                t210 * t619 + t106 * t623,
+                -t304,
+                t300 * t321,
+                -(t300 * t310),
+                t304,
+                -(t300 * t326),
+                t300 * rate_dot_distal_leg3,
+                -(t300 * t361),
+                t366,
+                t194 * t386 + t91 * t392 + t89 * t399,
+                t194 * t424 + t91 * t430 + t89 * t437,
+                t194 * t463 + t91 * t469 + t89 * t476,
+                t194 * t492 + t91 * t497 + t89 * t503,
+                t194 * t523 + t91 * t529 + t89 * t536,
+                t194 * t551 + t91 * t555 + t89 * t560,
+                -t366,
+                t194 * t166 - t91 * t574,
+                t194 * t583 - t91 * t272,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t121, t120 * t141, -(t120 * t48), t121,
-                -(t120 * t132), -(t120 * minus_rate_dot_distal_leg1), -(t120 * t176),
-                -(t120 * t183), 0.0, rate_dot_proximal_leg2, 9.81 * s_proximal_leg2, t208,
-                rate_dot_proximal_leg2, rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2), 1.0, -t232,
-                c_distal_leg2 * (t222 + t245) - minus_s_distal_leg2 * (t218 + t220)
-                    + t230 * t242,
-                -(c_distal_leg2 * (t216 - minus_rate_dot_distal_leg2)
-                    + minus_s_distal_leg2 * (t262 - t240) + t230 * t219),
-                rate_dot_proximal_leg2 + t232,
-                minus_s_distal_leg2 * (t216 + minus_rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t241 - t262) - t230 * t244,
-                -(t230 * minus_rate_dot_distal_leg2),
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t230 * t282),
-                9.81 * t65 - t230 * t290,
-                -t208,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t107, t106 * t127, -(t106 * t44), t107,
+                -(t106 * t119), -(t106 * minus_rate_dot_distal_leg1), -(t106 * t161),
+                -(t106 * t167), 0.0, rate_dot_proximal_leg2, t191, t192, rate_dot_proximal_leg2,
+                rate_proximal_leg2, ::overact::math::sign(rate_proximal_leg2), 1.0, -t214,
+                c_distal_leg2 * (t226 + t227 + t226) - minus_s_distal_leg2 * t205
+                    + t212 * t224,
+                -(c_distal_leg2 * (t200 - minus_rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t244 - t222) + t212 * t203),
+                rate_dot_proximal_leg2 + t214,
+                minus_s_distal_leg2 * (t200 + minus_rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t223 - t244) - t212 * t227,
+                -(t212 * minus_rate_dot_distal_leg2),
+                -(minus_s_distal_leg2 * t191 + t212 * t264),
+                t272 - t212 * t270,
+                -t192,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t326,
-                t325 * t341,
-                -(t325 * t327),
-                t326,
-                -(t325 * t346),
-                t325 * rate_dot_distal_leg3,
-                -(t325 * t381),
-                t325 * t385,
-                t227 * t403 + t118 * t409 + t114 * t416,
-                t227 * t441 + t118 * t447 + t114 * t454,
-                t227 * t477 + t118 * t483 + t114 * t490,
-                t227 * t506 + t118 * t511 + t114 * t517,
-                t227 * t537 + t118 * t543 + t114 * t550,
-                t227 * t565 + t118 * t569 + t114 * t574,
-                t227 * t589 + t118 * t593,
-                t227 * t604 + t118 * t608,
-                t227 * t619 + t118 * t623,
+                -t308,
+                t307 * t321,
+                -(t307 * t310),
+                t308,
+                -(t307 * t326),
+                t307 * rate_dot_distal_leg3,
+                -(t307 * t361),
+                t367,
+                t209 * t386 + t104 * t392 + t100 * t399,
+                t209 * t424 + t104 * t430 + t100 * t437,
+                t209 * t463 + t104 * t469 + t100 * t476,
+                t209 * t492 + t104 * t497 + t100 * t503,
+                t209 * t523 + t104 * t529 + t100 * t536,
+                t209 * t551 + t104 * t555 + t100 * t560,
+                -t367,
+                t209 * t166 - t104 * t574,
+                t209 * t583 - t104 * t272,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t131, t130 * t141, -(t130 * t48), t131,
-                -(t130 * t132), -(t130 * minus_rate_dot_distal_leg1), -(t130 * t176),
-                -(t130 * t183), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t239, t238 * t242,
-                -(t238 * t219), t239, -(t238 * t244), -(t238 * minus_rate_dot_distal_leg2),
-                -(t238 * t282), -(t238 * t290), 0.0, rate_dot_proximal_leg3, rate_dot_proximal_leg3,
-                rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg3), 1.0, t338,
-                minus_s_distal_leg3 * (t328 + t329) - c_distal_leg3 * (t331 + t347)
-                    + t336 * t341,
-                -(c_distal_leg3 * (t321 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t362 - t339) + t336 * t327),
-                rate_dot_proximal_leg3 - t338,
-                minus_s_distal_leg3 * (t321 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t340 - t362) - t336 * t346,
-                t336 * rate_dot_distal_leg3,
-                -(t336 * t381),
-                t336 * t385,
-                t235 * t403 + t128 * t409 + t124 * t416,
-                t235 * t441 + t128 * t447 + t124 * t454,
-                t235 * t477 + t128 * t483 + t124 * t490,
-                t235 * t506 + t128 * t511 + t124 * t517,
-                t235 * t537 + t128 * t543 + t124 * t550,
-                t235 * t565 + t128 * t569 + t124 * t574,
-                t235 * t589 + t128 * t593,
-                t235 * t604 + t128 * t608,
-                t235 * t619 + t128 * t623,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t117, t116 * t127, -(t116 * t44), t117,
+                -(t116 * t119), -(t116 * minus_rate_dot_distal_leg1), -(t116 * t161),
+                -(t116 * t167), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t221, t220 * t224,
+                -(t220 * t203), t221, -(t220 * t227), -(t220 * minus_rate_dot_distal_leg2),
+                -(t220 * t264), -(t220 * t270), 0.0, rate_dot_proximal_leg3, rate_dot_proximal_leg3,
+                rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg3), 1.0, t318,
+                minus_s_distal_leg3 * t312 - c_distal_leg3 * (t325 + t325 - t326)
+                    + t316 * t321,
+                -(c_distal_leg3 * (t303 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t342 - t319) + t316 * t310),
+                rate_dot_proximal_leg3 - t318,
+                minus_s_distal_leg3 * (t303 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t320 - t342) - t316 * t326,
+                t316 * rate_dot_distal_leg3,
+                -(t316 * t361),
+                t368,
+                t217 * t386 + t114 * t392 + t110 * t399,
+                t217 * t424 + t114 * t430 + t110 * t437,
+                t217 * t463 + t114 * t469 + t110 * t476,
+                t217 * t492 + t114 * t497 + t110 * t503,
+                t217 * t523 + t114 * t529 + t110 * t536,
+                t217 * t551 + t114 * t555 + t110 * t560,
+                -t368,
+                t217 * t166 - t114 * t574,
+                t217 * t583 - t114 * t272,
             ],
         ])
     }
@@ -2561,7 +2478,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 616 operations (227 additions, 385 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 525 intermediates.
+    /// 595 operations (218 additions, 373 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 504 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2596,216 +2513,213 @@ impl Spherical3Rrr {
                         + minus_s_proximal_leg1 * acceleration[2]));
         let t24 = 9.81 * minus_c_proximal_leg1;
         let t25 = 9.81 * minus_s_proximal_leg1;
-        let t27 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t28 = c_distal_leg1 * rate_proximal_leg1;
-        let t29 = minus_rate_distal_leg1 * t28;
-        let t30 = t27 + t29;
-        let t32 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t33 = minus_rate_distal_leg1 * t32;
-        let t40 = c_distal_leg2 / minus_s_distal_leg2;
-        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t40;
-        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t40;
-        let t47 = c_distal_leg3 / minus_s_distal_leg3;
-        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t47;
-        let t50 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
-        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t47;
-        let t53 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
+        let t27 = c_distal_leg1 * rate_proximal_leg1;
+        let t28 = minus_rate_distal_leg1 * t27;
+        let t29 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t31 = t28 + t29 + t28;
+        let t37 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t37;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t37;
+        let t44 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t44;
+        let t47 = gproximal_wx_leg2 - gproximal_wz_leg2 * gproximal_wx_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t44;
+        let t50 = 1.0 - gproximal_wz_leg2 * gproximal_wy_leg3;
         let gproximal_wy_leg1 = minus_c_proximal_leg1 * t12;
         let gproximal_wz_leg1 = minus_s_proximal_leg1 * t12;
-        let t59 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
-        let t61 = t53 - gproximal_wy_leg1 * t50 + gproximal_wz_leg1 * t59;
-        ::overact::guard::platform(t61, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t61, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t61, 1.0, "kept actuators")?;
-        let t62 = 1.0 / t61;
-        let t63 = t50 * t62;
-        let t65 = t59 * t62;
-        let t67 = minus_s_proximal_leg1 * t63 + minus_c_proximal_leg1 * t65;
-        let t68 = t32 * t28;
-        let t70 = minus_s_distal_leg1 * t30 + c_distal_leg1 * t33 + t67 * t68;
-        let t73 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t62;
-        let t77 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t62;
-        let t79 = minus_s_proximal_leg1 * t73 + minus_c_proximal_leg1 * t77;
-        let t80 = t79 * t68;
-        let t83 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t62;
-        let t87 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t62;
-        let t89 = minus_s_proximal_leg1 * t83 + minus_c_proximal_leg1 * t87;
-        let t90 = t89 * t68;
-        let t91 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t98 = t32 * t32;
-        let t99 = t28 * t28;
-        let t100 = t98 - t99;
+        let t56 = gproximal_wx_leg2 * gproximal_wy_leg3 - gproximal_wx_leg3;
+        let t58 = t50 - gproximal_wy_leg1 * t47 + gproximal_wz_leg1 * t56;
+        ::overact::guard::platform(t58, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t58, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t58, 1.0, "kept actuators")?;
+        let t59 = 1.0 / t58;
+        let t60 = t47 * t59;
+        let t62 = t56 * t59;
+        let t64 = minus_s_proximal_leg1 * t60 + minus_c_proximal_leg1 * t62;
+        let t65 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t66 = t65 * t27;
+        let t68 = minus_s_distal_leg1 * t31 + t64 * t66;
+        let t71 = (1.0 - gproximal_wz_leg1 * gproximal_wx_leg3) * t59;
+        let t75 = (gproximal_wy_leg3 - gproximal_wy_leg1 * gproximal_wx_leg3) * t59;
+        let t77 = minus_s_proximal_leg1 * t71 + minus_c_proximal_leg1 * t75;
+        let t78 = t77 * t66;
+        let t81 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t59;
+        let t85 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t59;
+        let t87 = minus_s_proximal_leg1 * t81 + minus_c_proximal_leg1 * t85;
+        let t88 = t87 * t66;
+        let t89 = minus_rate_distal_leg1 * t65;
+        let t90 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t96 = t65 * t65;
+        let t97 = t27 * t27;
+        let t98 = t96 - t97;
         let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
             - minus_c_proximal_leg1 * acceleration[2] + t4 * rate_proximal_leg1;
-        let t112 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t134 = minus_s_distal_leg1 * t25;
-        let t139 = c_distal_leg1 * t25;
-        let t147 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let t110 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t132 = minus_s_distal_leg1 * t25;
+        let t137 = c_distal_leg1 * t25;
+        let t145 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
             - minus_c_proximal_leg2 * twist[0];
-        let t153 = t40 * t147;
-        let rate_proximal_leg2 = t153 + twist[1];
-        let rate_dot_proximal_leg2 = acceleration[1] - t147 * minus_rate_distal_leg2
-            - t40
+        let t151 = t37 * t145;
+        let rate_proximal_leg2 = t151 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t145 * minus_rate_distal_leg2
+            - t37
                 * (minus_rate_distal_leg2 * rate_proximal_leg2
-                    + minus_rate_distal_leg2 * t153
+                    + minus_rate_distal_leg2 * t151
                     - (minus_s_proximal_leg2 * acceleration[0]
                         + minus_c_proximal_leg2 * acceleration[2]));
-        let t164 = 9.81 * minus_s_proximal_leg2;
-        let t165 = 9.81 * minus_c_proximal_leg2;
-        let t167 = t53 * t62;
-        let t170 = minus_c_proximal_leg2 * t167 - minus_s_proximal_leg2 * t65;
-        let t171 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t172 = c_distal_leg2 * rate_proximal_leg2;
-        let t173 = t171 * t172;
-        let t174 = t170 * t173;
-        let t175 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t176 = minus_rate_distal_leg2 * t172;
-        let t177 = t175 + t176;
-        let t179 = minus_rate_distal_leg2 * t171;
-        let t185 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t62;
-        let t187 = minus_s_proximal_leg2 * t77 - minus_c_proximal_leg2 * t185;
-        let t189 = minus_s_distal_leg2 * t177 + c_distal_leg2 * t179 + t187 * t173;
-        let t192 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t62;
-        let t195 = minus_c_proximal_leg2 * t192 - minus_s_proximal_leg2 * t87;
-        let t196 = t195 * t173;
-        let t197 = t171 * t171;
-        let t198 = t172 * t172;
-        let t199 = t197 - t198;
-        let t201 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t162 = 9.81 * minus_s_proximal_leg2;
+        let t163 = 9.81 * minus_c_proximal_leg2;
+        let t165 = t50 * t59;
+        let t168 = minus_c_proximal_leg2 * t165 - minus_s_proximal_leg2 * t62;
+        let t169 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t170 = c_distal_leg2 * rate_proximal_leg2;
+        let t171 = t169 * t170;
+        let t172 = t168 * t171;
+        let t173 = minus_rate_distal_leg2 * t170;
+        let t174 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t176 = t173 + t174 + t173;
+        let t181 = (gproximal_wy_leg1 - gproximal_wz_leg1 * gproximal_wy_leg3) * t59;
+        let t183 = minus_s_proximal_leg2 * t75 - minus_c_proximal_leg2 * t181;
+        let t185 = minus_s_distal_leg2 * t176 + t183 * t171;
+        let t188 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t59;
+        let t191 = minus_c_proximal_leg2 * t188 - minus_s_proximal_leg2 * t85;
+        let t192 = t191 * t171;
+        let t193 = t169 * t169;
+        let t194 = t170 * t170;
+        let t195 = t193 - t194;
+        let t197 = minus_rate_distal_leg2 * t169;
+        let t198 = c_distal_leg2 * rate_dot_proximal_leg2;
         let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
-            - minus_c_proximal_leg2 * acceleration[0] + t147 * rate_proximal_leg2;
-        let t219 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t239 = minus_s_distal_leg2 * t165;
-        let t245 = c_distal_leg2 * t165;
+            - minus_c_proximal_leg2 * acceleration[0] + t145 * rate_proximal_leg2;
+        let t215 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t235 = minus_s_distal_leg2 * t163;
+        let t241 = c_distal_leg2 * t163;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t259 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
-        let t260 = t47 * t259;
-        let rate_proximal_leg3 = t260 + twist[2];
-        let rate_dot_proximal_leg3 = t47
+        let t255 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t256 = t44 * t255;
+        let rate_proximal_leg3 = t256 + twist[2];
+        let rate_dot_proximal_leg3 = t44
             * (minus_c_proximal_leg3 * acceleration[0]
                 + minus_s_proximal_leg3 * acceleration[1]
-                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t260)
-            + acceleration[2] + t259 * rate_distal_leg3;
-        let t273 = minus_s_proximal_leg3 * t167 + minus_c_proximal_leg3 * t63;
-        let t274 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t275 = c_distal_leg3 * rate_proximal_leg3;
-        let t276 = t274 * t275;
-        let t277 = t273 * t276;
-        let t280 = minus_s_proximal_leg3 * t185 + minus_c_proximal_leg3 * t73;
-        let t281 = t280 * t276;
-        let t282 = rate_distal_leg3 * t275;
-        let t283 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t284 = t282 - t283;
-        let t286 = rate_distal_leg3 * t274;
-        let t291 = minus_s_proximal_leg3 * t192 + minus_c_proximal_leg3 * t83;
-        let t293 = minus_s_distal_leg3 * t284 + c_distal_leg3 * t286 + t291 * t276;
-        let t294 = t274 * t274;
-        let t295 = t275 * t275;
-        let t296 = t294 - t295;
-        let t301 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t310 = rate_distal_leg3 * rate_distal_leg3;
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t256)
+            + acceleration[2] + t255 * rate_distal_leg3;
+        let t269 = minus_s_proximal_leg3 * t165 + minus_c_proximal_leg3 * t60;
+        let t270 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t271 = c_distal_leg3 * rate_proximal_leg3;
+        let t272 = t270 * t271;
+        let t273 = t269 * t272;
+        let t276 = minus_s_proximal_leg3 * t181 + minus_c_proximal_leg3 * t71;
+        let t277 = t276 * t272;
+        let t278 = rate_distal_leg3 * t271;
+        let t279 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t281 = t278 + t278 - t279;
+        let t285 = minus_s_proximal_leg3 * t188 + minus_c_proximal_leg3 * t81;
+        let t287 = minus_s_distal_leg3 * t281 + t285 * t272;
+        let t288 = t270 * t270;
+        let t289 = t271 * t271;
+        let t290 = t288 - t289;
+        let t294 = rate_distal_leg3 * t270;
+        let t295 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t304 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
-            - minus_s_proximal_leg3 * acceleration[0] - t259 * rate_proximal_leg3;
-        let t336 = 9.81 * c_distal_leg3;
-        let t340 = 9.81 * minus_s_distal_leg3;
-        let t344 = 2.0 * pose[2];
-        let t345 = pose[2] * t344;
-        let t347 = 2.0 * pose[3];
-        let t348 = pose[3] * t347;
-        let t349 = 1.0 - t345 - t348;
-        let t351 = 2.0 * pose[1];
-        let t352 = pose[2] * t351;
-        let t353 = pose[0] * t347;
-        let t354 = t352 + t353;
-        let t357 = pose[3] * t351;
-        let t358 = pose[0] * t344;
-        let t359 = t357 - t358;
-        let t361 = t349 * acceleration[0] + t354 * acceleration[1]
-            + t359 * acceleration[2];
-        let t363 = t352 - t353;
-        let t368 = t349 * twist[0] + t354 * twist[1] + t359 * twist[2];
-        let t369 = t357 + t358;
-        let t371 = pose[3] * t344;
-        let t372 = pose[0] * t351;
-        let t373 = t371 - t372;
-        let t377 = 1.0 - pose[1] * t351;
-        let t378 = t377 - t345;
-        let t380 = t369 * twist[0] + t373 * twist[1] + t378 * twist[2];
-        let t381 = t368 * t380;
-        let t382 = t363 * t381;
-        let t385 = t377 - t348;
-        let t388 = t371 + t372;
-        let t390 = t363 * twist[0] + t385 * twist[1] + t388 * twist[2];
-        let t391 = t368 * t390;
-        let t392 = t369 * t391;
-        let t393 = t349 * t361 + t382 - t392;
-        let t396 = t385 * t381;
-        let t398 = t373 * t391;
-        let t399 = t354 * t361 + t396 - t398;
-        let t403 = t388 * t381;
-        let t405 = t378 * t391;
-        let t406 = t359 * t361 + t403 - t405;
-        let t419 = t390 * t380;
-        let t420 = t419 + t361;
-        let t426 = t363 * acceleration[0] + t385 * acceleration[1]
-            + t388 * acceleration[2];
-        let t427 = t381 - t426;
-        let t430 = t368 * t368;
-        let t431 = t390 * t390;
-        let t432 = t430 - t431;
-        let t434 = t363 * t420 - t349 * t427 + t369 * t432;
-        let t440 = t385 * t420 - t354 * t427 + t373 * t432;
-        let t447 = t388 * t420 - t359 * t427 + t378 * t432;
-        let t464 = t369 * acceleration[0] + t373 * acceleration[1]
-            + t378 * acceleration[2];
-        let t465 = t391 + t464;
-        let t467 = t380 * t380;
-        let t468 = t467 - t430;
-        let t471 = t419 - t361;
-        let t473 = t349 * t465 + t363 * t468 - t369 * t471;
-        let t479 = t354 * t465 + t385 * t468 - t373 * t471;
-        let t486 = t359 * t465 + t388 * t468 - t378 * t471;
-        let t500 = t349 * t419;
-        let t502 = t363 * t426 - t500 + t392;
-        let t505 = t354 * t419;
-        let t507 = t385 * t426 - t505 + t398;
-        let t511 = t359 * t419;
-        let t513 = t388 * t426 - t511 + t405;
-        let t526 = t431 - t467;
-        let t528 = t391 - t464;
-        let t531 = t381 + t426;
-        let t533 = t349 * t526 - t363 * t528 + t369 * t531;
-        let t539 = t354 * t526 - t385 * t528 + t373 * t531;
-        let t546 = t359 * t526 - t388 * t528 + t378 * t531;
-        let t561 = t500 - t382 + t369 * t464;
-        let t565 = t505 - t396 + t373 * t464;
-        let t570 = t511 - t403 + t378 * t464;
-        let t583 = 9.81 * t388;
-        let t585 = 9.81 * t378;
-        let t587 = t369 * t583 - t363 * t585;
-        let t591 = t373 * t583 - t385 * t585;
-        let t601 = 9.81 * t359;
-        let t603 = t349 * t585 - t369 * t601;
-        let t607 = t354 * t585 - t373 * t601;
-        let t618 = t363 * t601 - t349 * t583;
-        let t622 = t385 * t601 - t354 * t583;
+            - minus_s_proximal_leg3 * acceleration[0] - t255 * rate_proximal_leg3;
+        let t330 = 9.81 * c_distal_leg3;
+        let t334 = 9.81 * minus_s_distal_leg3;
+        let t338 = 2.0 * pose[2];
+        let t339 = pose[2] * t338;
+        let t341 = 2.0 * pose[3];
+        let t342 = pose[3] * t341;
+        let t343 = 1.0 - t339 - t342;
+        let t345 = 2.0 * pose[1];
+        let t346 = pose[2] * t345;
+        let t347 = pose[0] * t341;
+        let t348 = t346 + t347;
+        let t351 = pose[3] * t345;
+        let t352 = pose[0] * t338;
+        let t353 = t351 - t352;
+        let t355 = t343 * acceleration[0] + t348 * acceleration[1]
+            + t353 * acceleration[2];
+        let t357 = t346 - t347;
+        let t362 = t343 * twist[0] + t348 * twist[1] + t353 * twist[2];
+        let t363 = t351 + t352;
+        let t365 = pose[3] * t338;
+        let t366 = pose[0] * t345;
+        let t367 = t365 - t366;
+        let t371 = 1.0 - pose[1] * t345;
+        let t372 = t371 - t339;
+        let t374 = t363 * twist[0] + t367 * twist[1] + t372 * twist[2];
+        let t375 = t362 * t374;
+        let t376 = t357 * t375;
+        let t379 = t371 - t342;
+        let t382 = t365 + t366;
+        let t384 = t357 * twist[0] + t379 * twist[1] + t382 * twist[2];
+        let t385 = t362 * t384;
+        let t386 = t363 * t385;
+        let t387 = t343 * t355 + t376 - t386;
+        let t390 = t379 * t375;
+        let t392 = t367 * t385;
+        let t393 = t348 * t355 + t390 - t392;
+        let t397 = t382 * t375;
+        let t399 = t372 * t385;
+        let t400 = t353 * t355 + t397 - t399;
+        let t417 = t357 * acceleration[0] + t379 * acceleration[1]
+            + t382 * acceleration[2];
+        let t418 = t417 - t375;
+        let t420 = t384 * t374;
+        let t421 = t355 + t420;
+        let t424 = t362 * t362;
+        let t425 = t384 * t384;
+        let t426 = t424 - t425;
+        let t428 = t343 * t418 + t357 * t421 + t363 * t426;
+        let t434 = t348 * t418 + t379 * t421 + t367 * t426;
+        let t441 = t353 * t418 + t382 * t421 + t372 * t426;
+        let t458 = t363 * acceleration[0] + t367 * acceleration[1]
+            + t372 * acceleration[2];
+        let t459 = t458 + t385;
+        let t461 = t374 * t374;
+        let t462 = t461 - t424;
+        let t465 = t355 - t420;
+        let t467 = t343 * t459 + t357 * t462 + t363 * t465;
+        let t473 = t348 * t459 + t379 * t462 + t367 * t465;
+        let t480 = t353 * t459 + t382 * t462 + t372 * t465;
+        let t494 = t343 * t420;
+        let t496 = t357 * t417 - t494 + t386;
+        let t499 = t348 * t420;
+        let t501 = t379 * t417 - t499 + t392;
+        let t505 = t353 * t420;
+        let t507 = t382 * t417 - t505 + t399;
+        let t520 = t425 - t461;
+        let t522 = t458 - t385;
+        let t525 = t417 + t375;
+        let t527 = t343 * t520 + t357 * t522 + t363 * t525;
+        let t533 = t348 * t520 + t379 * t522 + t367 * t525;
+        let t540 = t353 * t520 + t382 * t522 + t372 * t525;
+        let t555 = t494 - t376 + t363 * t458;
+        let t559 = t499 - t390 + t367 * t458;
+        let t564 = t505 - t397 + t372 * t458;
+        let t577 = 9.81 * t348;
+        let t579 = 9.81 * t343;
+        let t588 = 9.81 * t379;
+        let t590 = 9.81 * t357;
+        let t599 = 9.81 * t367;
+        let t601 = 9.81 * t363;
         Ok([
             [
                 rate_dot_proximal_leg1, -t24, t25, rate_dot_proximal_leg1, rate_proximal_leg1,
-                ::overact::math::sign(rate_proximal_leg1), 1.0, t70,
-                minus_s_distal_leg1 * (t33 - (t91 - t33)) - c_distal_leg1 * (t29 + t30)
-                    + t67 * t100,
-                minus_s_distal_leg1 * (t68 + minus_rate_dot_distal_leg1)
-                    + c_distal_leg1 * (t112 - t98) - t67 * t27,
-                rate_dot_proximal_leg1 - t70,
-                t67 * t91
-                    - (minus_s_distal_leg1 * (t99 - t112)
-                        + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t68)),
-                -(t67 * minus_rate_dot_distal_leg1),
-                -(c_distal_leg1 * t24 + t67 * t134),
-                t67 * t139 - minus_s_distal_leg1 * t24,
+                ::overact::math::sign(rate_proximal_leg1), 1.0, t68,
+                minus_s_distal_leg1 * (t89 - (t90 - t89)) - c_distal_leg1 * t31
+                    + t64 * t98,
+                minus_s_distal_leg1 * (t66 + minus_rate_dot_distal_leg1)
+                    + c_distal_leg1 * (t110 - t96) - t64 * t29,
+                rate_dot_proximal_leg1 - t68,
+                t64 * t90
+                    - (minus_s_distal_leg1 * (t97 - t110)
+                        + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t66)),
+                -(t64 * minus_rate_dot_distal_leg1),
+                -(c_distal_leg1 * t24 + t64 * t132),
+                t64 * t137 - minus_s_distal_leg1 * t24,
                 -t25,
                 0.0,
                 0.0,
@@ -2814,104 +2728,104 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t174,
-                t170 * t199,
-                -(t170 * t175),
-                -t174,
-                t170 * t201,
-                -(t170 * minus_rate_dot_distal_leg2),
-                -(t170 * t239),
-                t170 * t245,
+                t172,
+                t168 * t195,
+                -(t168 * t174),
+                -t172,
+                t168 * t198,
+                -(t168 * minus_rate_dot_distal_leg2),
+                -(t168 * t235),
+                t168 * t241,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t277,
-                -(t273 * t296),
-                t273 * t283,
+                -t273,
+                -(t269 * t290),
+                t269 * t279,
+                t273,
+                -(t269 * t295),
+                -(t269 * rate_dot_distal_leg3),
+                -(t269 * t330),
+                -(t269 * t334),
+                t165 * t387 - t60 * t393 + t62 * t400,
+                t165 * t428 - t60 * t434 + t62 * t441,
+                t165 * t467 - t60 * t473 + t62 * t480,
+                t165 * t496 - t60 * t501 + t62 * t507,
+                t165 * t527 - t60 * t533 + t62 * t540,
+                t165 * t555 - t60 * t559 + t62 * t564,
+                t165 * t577 + t60 * t579,
+                t165 * t588 + t60 * t590,
+                t165 * t599 + t60 * t601,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t78, -(t77 * t98), t77 * t29, t78, -(t77 * t90),
+                t77 * minus_rate_dot_distal_leg1, t77 * t132, -(t77 * t137), 0.0,
+                rate_dot_proximal_leg2, t162, t163, rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, t185,
+                minus_s_distal_leg2 * (t197 - (t198 - t197)) - c_distal_leg2 * t176
+                    + t183 * t195,
+                minus_s_distal_leg2 * (t171 + minus_rate_dot_distal_leg2)
+                    + c_distal_leg2 * (t215 - t193) - t183 * t174,
+                rate_dot_proximal_leg2 - t185,
+                t183 * t198
+                    - (minus_s_distal_leg2 * (t194 - t215)
+                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t171)),
+                -(t183 * minus_rate_dot_distal_leg2),
+                c_distal_leg2 * t162 - t183 * t235,
+                minus_s_distal_leg2 * t162 + t183 * t241,
+                -t163,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
                 t277,
-                -(t273 * t301),
-                -(t273 * rate_dot_distal_leg3),
-                -(t273 * t336),
-                -(t273 * t340),
-                t167 * t393 - t63 * t399 + t65 * t406,
-                t167 * t434 - t63 * t440 + t65 * t447,
-                t167 * t473 - t63 * t479 + t65 * t486,
-                t167 * t502 - t63 * t507 + t65 * t513,
-                t167 * t533 - t63 * t539 + t65 * t546,
-                t167 * t561 - t63 * t565 + t65 * t570,
-                t167 * t587 - t63 * t591,
-                t167 * t603 - t63 * t607,
-                t167 * t618 - t63 * t622,
+                t276 * t290,
+                -(t276 * t279),
+                -t277,
+                t276 * t295,
+                t276 * rate_dot_distal_leg3,
+                t276 * t330,
+                t276 * t334,
+                t71 * t393 - t181 * t387 - t75 * t400,
+                t71 * t434 - t181 * t428 - t75 * t441,
+                t71 * t473 - t181 * t467 - t75 * t480,
+                t71 * t501 - t181 * t496 - t75 * t507,
+                t71 * t533 - t181 * t527 - t75 * t540,
+                t71 * t559 - t181 * t555 - t75 * t564,
+                -(t181 * t577 + t71 * t579),
+                -(t181 * t588 + t71 * t590),
+                -(t181 * t599 + t71 * t601),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t80, -(t79 * t100), t79 * t27, t80,
-                -(t79 * t91), t79 * minus_rate_dot_distal_leg1, t79 * t134, -(t79 * t139), 0.0,
-                rate_dot_proximal_leg2, t164, t165, rate_dot_proximal_leg2, rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2), 1.0, t189,
-                minus_s_distal_leg2 * (t179 - (t201 - t179))
-                    - c_distal_leg2 * (t176 + t177) + t187 * t199,
-                minus_s_distal_leg2 * (t173 + minus_rate_dot_distal_leg2)
-                    + c_distal_leg2 * (t219 - t197) - t187 * t175,
-                rate_dot_proximal_leg2 - t189,
-                t187 * t201
-                    - (minus_s_distal_leg2 * (t198 - t219)
-                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t173)),
-                -(t187 * minus_rate_dot_distal_leg2),
-                c_distal_leg2 * t164 - t187 * t239,
-                minus_s_distal_leg2 * t164 + t187 * t245,
-                -t165,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                t281,
-                t280 * t296,
-                -(t280 * t283),
-                -t281,
-                t280 * t301,
-                t280 * rate_dot_distal_leg3,
-                t280 * t336,
-                t280 * t340,
-                t73 * t399 - t185 * t393 - t77 * t406,
-                t73 * t440 - t185 * t434 - t77 * t447,
-                t73 * t479 - t185 * t473 - t77 * t486,
-                t73 * t507 - t185 * t502 - t77 * t513,
-                t73 * t539 - t185 * t533 - t77 * t546,
-                t73 * t565 - t185 * t561 - t77 * t570,
-                t73 * t591 - t185 * t587,
-                t73 * t607 - t185 * t603,
-                t73 * t622 - t185 * t618,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t90, t89 * t100, -(t89 * t27), -t90, t89 * t91,
-                -(t89 * minus_rate_dot_distal_leg1), -(t89 * t134), t89 * t139, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t196, t195 * t199, -(t195 * t175), -t196, t195 * t201,
-                -(t195 * minus_rate_dot_distal_leg2), -(t195 * t239), t195 * t245, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t88, t87 * t98, -(t87 * t29), -t88, t87 * t90,
+                -(t87 * minus_rate_dot_distal_leg1), -(t87 * t132), t87 * t137, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t192, t191 * t195, -(t191 * t174), -t192, t191 * t198,
+                -(t191 * minus_rate_dot_distal_leg2), -(t191 * t235), t191 * t241, 0.0,
                 rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, -t293,
-                c_distal_leg3 * (t282 + t284)
-                    - minus_s_distal_leg3 * (t286 + t301 + t286) - t291 * t296,
-                c_distal_leg3 * (t310 - t294)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t276) + t291 * t283,
-                rate_dot_proximal_leg3 + t293,
-                c_distal_leg3 * (t276 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t295 - t310) - t291 * t301,
-                -(t291 * rate_dot_distal_leg3),
-                -(t291 * t336),
-                -(t291 * t340),
-                t192 * t393 - t83 * t399 + t87 * t406,
-                t192 * t434 - t83 * t440 + t87 * t447,
-                t192 * t473 - t83 * t479 + t87 * t486,
-                t192 * t502 - t83 * t507 + t87 * t513,
-                t192 * t533 - t83 * t539 + t87 * t546,
-                t192 * t561 - t83 * t565 + t87 * t570,
-                t192 * t587 - t83 * t591,
-                t192 * t603 - t83 * t607,
-                t192 * t618 - t83 * t622,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, -t287,
+                c_distal_leg3 * t281 - minus_s_distal_leg3 * (t294 + t295 + t294)
+                    - t285 * t290,
+                c_distal_leg3 * (t304 - t288)
+                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t272) + t285 * t279,
+                rate_dot_proximal_leg3 + t287,
+                c_distal_leg3 * (t272 + rate_dot_distal_leg3)
+                    - minus_s_distal_leg3 * (t289 - t304) - t285 * t295,
+                -(t285 * rate_dot_distal_leg3),
+                -(t285 * t330),
+                -(t285 * t334),
+                t188 * t387 - t81 * t393 + t85 * t400,
+                t188 * t428 - t81 * t434 + t85 * t441,
+                t188 * t467 - t81 * t473 + t85 * t480,
+                t188 * t496 - t81 * t501 + t85 * t507,
+                t188 * t527 - t81 * t533 + t85 * t540,
+                t188 * t555 - t81 * t559 + t85 * t564,
+                t188 * t577 + t81 * t579,
+                t188 * t588 + t81 * t590,
+                t188 * t599 + t81 * t601,
             ],
         ])
     }
@@ -2926,7 +2840,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 712 operations (261 additions, 441 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 618 intermediates.
+    /// 661 operations (247 additions, 407 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 570 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2949,290 +2863,282 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t13 * (t5 * t20);
-        let t23 = 9.81 * s_proximal_leg1;
-        let t25 = 1.0 / c_distal_leg1;
-        let t26 = minus_s_distal_leg1 * t25;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t26;
-        let t30 = pose[2] * t17;
-        let t32 = 1.0 - t30 - t4;
-        let t33 = pose[3] * t0;
-        let t34 = pose[0] * t17;
-        let minus_s_distal_leg3 = t33 - t34;
-        let t37 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t37, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t37);
+        let t12 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t5 * t12;
+        let t14 = 9.81 * c_proximal_leg1;
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let t18 = t16 + t17;
+        let s_proximal_leg1 = t18 * t12;
+        let t20 = 9.81 * s_proximal_leg1;
+        let t22 = minus_s_distal_leg1 * t12;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t22;
+        let t26 = t6 + t7;
+        let t27 = pose[3] * t0;
+        let t28 = pose[0] * t15;
+        let minus_s_distal_leg3 = t27 - t28;
+        let t31 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t31, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t31);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t40 = 1.0 / (t32 * c_distal_leg3);
-        let t41 = t6 + t7;
-        let s_proximal_leg3 = t40 * (t32 * t41);
-        let t44 = 1.0 / c_distal_leg3;
-        let t45 = minus_s_distal_leg3 * t44;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t45;
-        let c_proximal_leg3 = t40 * (t32 * t32);
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t45;
-        let t53 = t2 - t30;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t56 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t56, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t56);
+        let t33 = 1.0 / c_distal_leg3;
+        let s_proximal_leg3 = t26 * t33;
+        let t35 = minus_s_distal_leg3 * t33;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
+        let t39 = pose[2] * t15;
+        let t41 = 1.0 - t39 - t4;
+        let c_proximal_leg3 = t41 * t33;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
+        let t45 = t27 + t28;
+        let minus_s_distal_leg2 = t16 - t17;
+        let t48 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t48, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t48);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t59 = 1.0 / (t53 * c_distal_leg2);
-        let t60 = t33 + t34;
-        let s_proximal_leg2 = t59 * (t60 * t53);
-        let t63 = 1.0 / c_distal_leg2;
-        let t64 = minus_s_distal_leg2 * t63;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t64;
-        let t67 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t50 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t45 * t50;
+        let t52 = minus_s_distal_leg2 * t50;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t52;
+        let t55 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t71 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t59 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        let t72 = 1.0 / t71;
-        let t73 = t67 * t72;
-        let t75 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t67 * t73;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        let t76 = 1.0 / t75;
-        let t84 = actuator_velocities[0]
+        ::overact::guard::platform(t59, 1.0, "actuators")?;
+        ::overact::guard::platform(t59, 1.0, "actuators")?;
+        let t60 = 1.0 / t59;
+        let t61 = t55 * t60;
+        let t63 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t55 * t61;
+        ::overact::guard::platform(t63, 1.0, "actuators")?;
+        ::overact::guard::platform(t63, 1.0, "actuators")?;
+        let t64 = 1.0 / t63;
+        let t72 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t86 = actuator_velocities[1]
+        let t74 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t84 * t73;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t26;
-        let c_proximal_leg2 = t59 * (t53 * t53);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t64;
-        let t97 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t72 * t61;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t22;
+        let t78 = t2 - t39;
+        let c_proximal_leg2 = t78 * t50;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t52;
+        let t85 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t98 = t97 * t72;
-        let t100 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t67 * t98;
-        let t101 = t100 * t76;
-        let t109 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t97 * t98
-            - t100 * t101;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        let t110 = 1.0 / t109;
-        let t119 = t110
+        let t86 = t85 * t60;
+        let t88 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t55 * t86;
+        let t89 = t88 * t64;
+        let t97 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t85 * t86
+            - t88 * t89;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        let t98 = 1.0 / t97;
+        let t107 = t98
             * (actuator_velocities[2]
                 - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t84 * t98
-                - t101 * t86);
-        let t121 = t76 * t86 - t101 * t119;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t121 - c_proximal_leg1 * t119;
-        let t125 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t126 = minus_rate_distal_leg1 * t125;
-        let t127 = c_distal_leg1 * actuator_accelerations[0];
-        let t128 = t126 - t127;
-        let t130 = c_distal_leg1 * actuator_velocities[0];
-        let t131 = minus_rate_distal_leg1 * t130;
-        let t135 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t72 * t86
+                - t89 * t74);
+        let t109 = t64 * t74 - t89 * t107;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t109 - c_proximal_leg1 * t107;
+        let t113 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t114 = minus_rate_distal_leg1 * t113;
+        let t115 = c_distal_leg1 * actuator_accelerations[0];
+        let t117 = t114 + t114 - t115;
+        let t120 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let t137 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let t139 = minus_gproximal_wx_leg2
+        let t122 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t124 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let t143 = t137 - minus_gproximal_wy_leg1 * t139
-            - minus_gproximal_wz_leg1 * t135;
-        ::overact::guard::platform(t143, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t143, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t143, 1.0, "kept actuators")?;
-        let t144 = 1.0 / t143;
-        let t145 = t135 * t144;
-        let t147 = t139 * t144;
-        let t149 = c_proximal_leg1 * t145 - s_proximal_leg1 * t147;
-        let t150 = t130 * t125;
-        let t152 = c_distal_leg1 * t128 + minus_s_distal_leg1 * t131 + t149 * t150;
-        let t155 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t144;
-        let t159 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t144;
-        let t161 = c_proximal_leg1 * t155 - s_proximal_leg1 * t159;
-        let t162 = t161 * t150;
-        let t165 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t144;
-        let t169 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t144;
-        let t171 = c_proximal_leg1 * t165 - s_proximal_leg1 * t169;
-        let t172 = t171 * t150;
-        let t173 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t174 = t173 + t131;
-        let t180 = t130 * t130;
-        let t181 = t125 * t125;
-        let t182 = t180 - t181;
-        let t192 = t84 * t72 - t73 * t121 - t98 * t119;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t119 - c_proximal_leg2 * t192;
-        let t197 = s_proximal_leg2 * t192 + c_proximal_leg2 * t119;
-        let t201 = minus_rate_distal_leg2 * (t64 * t197)
-            - actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t64 * t201 + t197 * minus_rate_distal_leg2;
-        let t205 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t208 = c_proximal_leg1 * t121 + s_proximal_leg1 * t119;
-        let t212 = minus_rate_distal_leg1 * (t26 * t208)
+        let t128 = t122 - minus_gproximal_wy_leg1 * t124
+            - minus_gproximal_wz_leg1 * t120;
+        ::overact::guard::platform(t128, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t128, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t128, 1.0, "kept actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = t120 * t129;
+        let t132 = t124 * t129;
+        let t134 = c_proximal_leg1 * t130 - s_proximal_leg1 * t132;
+        let t135 = c_distal_leg1 * actuator_velocities[0];
+        let t136 = t135 * t113;
+        let t138 = c_distal_leg1 * t117 + t134 * t136;
+        let t141 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t129;
+        let t145 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t129;
+        let t147 = c_proximal_leg1 * t141 - s_proximal_leg1 * t145;
+        let t148 = t147 * t136;
+        let t151 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t129;
+        let t155 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t129;
+        let t157 = c_proximal_leg1 * t151 - s_proximal_leg1 * t155;
+        let t158 = t157 * t136;
+        let t159 = minus_rate_distal_leg1 * t135;
+        let t160 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t161 = t160 + t159;
+        let t166 = t135 * t135;
+        let t167 = t113 * t113;
+        let t168 = t166 - t167;
+        let t175 = c_proximal_leg1 * t109 + s_proximal_leg1 * t107;
+        let t176 = t22 * t175;
+        let t177 = actuator_velocities[0] + t176;
+        let t180 = s_proximal_leg2 * t177 + c_proximal_leg2 * t107;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t107 - c_proximal_leg2 * t177;
+        let t184 = t180 * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t52
+            * (t52 * t184 - actuator_velocities[1] * minus_rate_distal_leg2) + t184;
+        let t190 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t193 = minus_rate_distal_leg1 * t176
             - actuator_velocities[0] * minus_rate_distal_leg1;
-        let minus_rate_dot_proximal_leg1 = t26 * t212 + t208 * minus_rate_distal_leg1;
-        let t216 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let rate_distal_leg3 = c_proximal_leg3 * t121 - s_proximal_leg3 * t192;
-        let t225 = c_proximal_leg3 * t192 + s_proximal_leg3 * t121;
-        let t228 = actuator_velocities[2] * rate_distal_leg3
-            - rate_distal_leg3 * (t45 * t225);
-        let minus_rate_dot_proximal_leg3 = t45 * t228 - t225 * rate_distal_leg3;
-        let t232 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t238 = t216 - minus_gproximal_wx_leg2 * t205
-            - minus_gproximal_wx_leg3 * t232;
-        let t240 = t205 - minus_gproximal_wy_leg1 * t216 - minus_gproximal_wy_leg3 * t232
-            - t73 * t238;
-        let t250 = t110
-            * (t232 - (minus_gproximal_wz_leg1 * t216 + minus_gproximal_wz_leg2 * t205)
-                - t98 * t238 - t101 * t240);
-        let t252 = t76 * t240 - t101 * t250;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t208;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t252
-            - c_proximal_leg1 * t250 + minus_rate_dot_distal_leg1;
-        let t260 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t283 = 9.81 * t20;
-        let t290 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t296 = 9.81 * c_proximal_leg2;
-        let t298 = t137 * t144;
-        let t301 = c_proximal_leg2 * t298 - s_proximal_leg2 * t145;
-        let t302 = c_distal_leg2 * actuator_velocities[1];
-        let t303 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t304 = t302 * t303;
-        let t305 = t301 * t304;
-        let t306 = minus_rate_distal_leg2 * t303;
-        let t307 = c_distal_leg2 * actuator_accelerations[1];
-        let t308 = t306 - t307;
-        let t310 = minus_rate_distal_leg2 * t302;
-        let t315 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t144;
-        let t318 = c_proximal_leg2 * t315 - s_proximal_leg2 * t155;
-        let t320 = c_distal_leg2 * t308 + minus_s_distal_leg2 * t310 + t318 * t304;
-        let t323 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t144;
-        let t326 = c_proximal_leg2 * t323 - s_proximal_leg2 * t165;
-        let t327 = t326 * t304;
-        let t328 = t302 * t302;
-        let t329 = t303 * t303;
-        let t330 = t328 - t329;
-        let t332 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t333 = t332 + t310;
-        let t348 = t72 * t238 - t73 * t252 - t98 * t250;
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t197;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t250
-            - c_proximal_leg2 * t348 + minus_rate_dot_distal_leg2;
-        let t355 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t375 = 9.81 * t53;
-        let t383 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t392 = c_proximal_leg3 * t147 - s_proximal_leg3 * t298;
-        let t393 = c_distal_leg3 * actuator_velocities[2];
-        let t394 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t395 = t393 * t394;
-        let t396 = t392 * t395;
-        let t399 = c_proximal_leg3 * t159 - s_proximal_leg3 * t315;
-        let t400 = t399 * t395;
-        let t401 = c_distal_leg3 * actuator_accelerations[2];
-        let t402 = rate_distal_leg3 * t394;
-        let t403 = t401 + t402;
-        let t405 = rate_distal_leg3 * t393;
-        let t410 = c_proximal_leg3 * t169 - s_proximal_leg3 * t323;
-        let t412 = c_distal_leg3 * t403 + minus_s_distal_leg3 * t405 - t410 * t395;
-        let t413 = t393 * t393;
-        let t414 = t394 * t394;
-        let t415 = t413 - t414;
-        let t420 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t421 = t405 - t420;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t225;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t252 - s_proximal_leg3 * t348
+        let minus_rate_dot_proximal_leg1 = t22 * t193 + t175 * minus_rate_distal_leg1;
+        let t197 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t109 - s_proximal_leg3 * t177;
+        let t206 = t41 * t177 + t26 * t109;
+        let t207 = t33 * t206;
+        let t208 = t207 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t35
+            * (actuator_velocities[2] * rate_distal_leg3 - t35 * t208) - t208;
+        let t213 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t219 = t197 - minus_gproximal_wx_leg2 * t190
+            - minus_gproximal_wx_leg3 * t213;
+        let t221 = t190 - minus_gproximal_wy_leg1 * t197 - minus_gproximal_wy_leg3 * t213
+            - t61 * t219;
+        let t231 = t98
+            * (t213 - (minus_gproximal_wz_leg1 * t197 + minus_gproximal_wz_leg2 * t190)
+                - t86 * t219 - t89 * t221);
+        let t233 = t64 * t221 - t89 * t231;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t175;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t233
+            - c_proximal_leg1 * t231 + minus_rate_dot_distal_leg1;
+        let t241 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t263 = 9.81 * t18;
+        let t268 = 9.81 * t5;
+        let t269 = minus_s_distal_leg1 * t20;
+        let t274 = 9.81 * s_proximal_leg2;
+        let t275 = 9.81 * c_proximal_leg2;
+        let t277 = t122 * t129;
+        let t280 = c_proximal_leg2 * t277 - s_proximal_leg2 * t130;
+        let t281 = c_distal_leg2 * actuator_velocities[1];
+        let t282 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t283 = t281 * t282;
+        let t284 = t280 * t283;
+        let t285 = minus_rate_distal_leg2 * t282;
+        let t286 = c_distal_leg2 * actuator_accelerations[1];
+        let t288 = t285 + t285 - t286;
+        let t292 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t129;
+        let t295 = c_proximal_leg2 * t292 - s_proximal_leg2 * t141;
+        let t297 = c_distal_leg2 * t288 + t295 * t283;
+        let t300 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t129;
+        let t303 = c_proximal_leg2 * t300 - s_proximal_leg2 * t151;
+        let t304 = t303 * t283;
+        let t305 = t281 * t281;
+        let t306 = t282 * t282;
+        let t307 = t305 - t306;
+        let t309 = minus_rate_distal_leg2 * t281;
+        let t310 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t325 = t60 * t219 - t61 * t233 - t86 * t231;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t180;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t231
+            - c_proximal_leg2 * t325 + minus_rate_dot_distal_leg2;
+        let t332 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t352 = 9.81 * t78;
+        let t358 = minus_s_distal_leg2 * t275;
+        let t360 = 9.81 * t45;
+        let t367 = c_proximal_leg3 * t132 - s_proximal_leg3 * t277;
+        let t368 = c_distal_leg3 * actuator_velocities[2];
+        let t369 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t370 = t368 * t369;
+        let t371 = t367 * t370;
+        let t374 = c_proximal_leg3 * t145 - s_proximal_leg3 * t292;
+        let t375 = t374 * t370;
+        let t376 = rate_distal_leg3 * t369;
+        let t377 = c_distal_leg3 * actuator_accelerations[2];
+        let t379 = t376 + t377 + t376;
+        let t383 = c_proximal_leg3 * t155 - s_proximal_leg3 * t300;
+        let t385 = c_distal_leg3 * t379 - t383 * t370;
+        let t386 = t368 * t368;
+        let t387 = t369 * t369;
+        let t388 = t386 - t387;
+        let t392 = rate_distal_leg3 * t368;
+        let t393 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t207;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t233 - s_proximal_leg3 * t325
             - minus_rate_dot_distal_leg3;
-        let t436 = rate_distal_leg3 * rate_distal_leg3;
-        let t455 = 9.81 * minus_s_distal_leg3;
-        let t459 = 9.81 * c_distal_leg3;
-        let rate_dot_wrist_leg3 = t44
-            * (c_proximal_leg3 * t348 + s_proximal_leg3 * t252 + t228);
-        let t468 = rate_dot_wrist_leg3 - t421;
-        let rate_wrist_leg2 = t63 * t197;
-        let t471 = t303 + rate_wrist_leg2;
-        let rate_wrist_leg3 = t44 * t225;
-        let t473 = t394 + rate_wrist_leg3;
-        let t474 = t471 * t473;
-        let t475 = minus_s_distal_leg1 * t474;
-        let rate_wrist_leg1 = t25 * t208;
-        let t478 = t125 + rate_wrist_leg1;
-        let t479 = t478 * t473;
-        let t480 = t60 * t479;
-        let t481 = t32 * t468 + t475 - t480;
-        let t484 = t5 * t474;
-        let t486 = minus_s_distal_leg2 * t479;
-        let t487 = t41 * t468 + t484 - t486;
-        let t491 = t20 * t474;
-        let t493 = t53 * t479;
-        let t494 = minus_s_distal_leg3 * t468 + t491 - t493;
-        let t507 = t478 * t471;
-        let t508 = t507 + t468;
-        let rate_dot_wrist_leg1 = t25
-            * (c_proximal_leg1 * t252 + s_proximal_leg1 * t250 + t212);
-        let t515 = t174 + rate_dot_wrist_leg1;
-        let t516 = t474 - t515;
-        let t519 = t473 * t473;
-        let t520 = t478 * t478;
-        let t521 = t519 - t520;
-        let t523 = minus_s_distal_leg1 * t508 - t32 * t516 + t60 * t521;
-        let t529 = t5 * t508 - t41 * t516 + minus_s_distal_leg2 * t521;
-        let t536 = t20 * t508 - minus_s_distal_leg3 * t516 + t53 * t521;
-        let rate_dot_wrist_leg2 = t63
-            * (s_proximal_leg2 * t348 + c_proximal_leg2 * t250 + t201);
-        let t554 = t333 + rate_dot_wrist_leg2;
-        let t555 = t479 + t554;
-        let t557 = t471 * t471;
-        let t558 = t557 - t519;
-        let t561 = t507 - t468;
-        let t563 = t32 * t555 + minus_s_distal_leg1 * t558 - t60 * t561;
-        let t569 = t41 * t555 + t5 * t558 - minus_s_distal_leg2 * t561;
-        let t576 = minus_s_distal_leg3 * t555 + t20 * t558 - t53 * t561;
-        let t590 = t32 * t507;
-        let t592 = minus_s_distal_leg1 * t515 - t590 + t480;
-        let t595 = t41 * t507;
-        let t597 = t5 * t515 - t595 + t486;
-        let t601 = minus_s_distal_leg3 * t507;
-        let t603 = t20 * t515 - t601 + t493;
-        let t616 = t520 - t557;
-        let t618 = t479 - t554;
-        let t621 = t474 + t515;
-        let t623 = t32 * t616 - minus_s_distal_leg1 * t618 + t60 * t621;
-        let t629 = t41 * t616 - t5 * t618 + minus_s_distal_leg2 * t621;
-        let t636 = minus_s_distal_leg3 * t616 - t20 * t618 + t53 * t621;
-        let t651 = t590 - t475 + t60 * t554;
-        let t655 = t595 - t484 + minus_s_distal_leg2 * t554;
-        let t660 = t601 - t491 + t53 * t554;
-        let t675 = t60 * t283 - minus_s_distal_leg1 * t375;
-        let t679 = minus_s_distal_leg2 * t283 - t5 * t375;
-        let t690 = t32 * t375 - t60 * t455;
-        let t694 = t41 * t375 - minus_s_distal_leg2 * t455;
-        let t705 = minus_s_distal_leg1 * t455 - t32 * t283;
-        let t709 = t5 * t455 - t41 * t283;
+        let t409 = rate_distal_leg3 * rate_distal_leg3;
+        let t428 = 9.81 * minus_s_distal_leg3;
+        let t432 = 9.81 * c_distal_leg3;
+        let t433 = t367 * t432;
+        let t434 = t374 * t432;
+        let t435 = t383 * t432;
+        let t440 = t41 * t325 + t26 * t233 + minus_s_distal_leg3 * t231;
+        let t443 = t206 + minus_s_distal_leg3 * t107;
+        let t448 = t45 * t177 + minus_s_distal_leg2 * t109 + t78 * t107;
+        let t449 = t443 * t448;
+        let t450 = minus_s_distal_leg1 * t449;
+        let rate_wrist_leg1 = t12 * t175;
+        let t453 = t113 + rate_wrist_leg1;
+        let t454 = t453 * t443;
+        let t455 = t45 * t454;
+        let t456 = t41 * t440 + t450 - t455;
+        let t459 = t5 * t449;
+        let t461 = minus_s_distal_leg2 * t454;
+        let t462 = t26 * t440 + t459 - t461;
+        let t466 = t18 * t449;
+        let t468 = t78 * t454;
+        let t469 = minus_s_distal_leg3 * t440 + t466 - t468;
+        let rate_dot_wrist_leg1 = t12
+            * (c_proximal_leg1 * t233 + s_proximal_leg1 * t231 + t193);
+        let t487 = t161 + rate_dot_wrist_leg1;
+        let t488 = t487 - t449;
+        let t490 = t453 * t448;
+        let t491 = t440 + t490;
+        let t494 = t443 * t443;
+        let t495 = t453 * t453;
+        let t496 = t494 - t495;
+        let t498 = t41 * t488 + minus_s_distal_leg1 * t491 + t45 * t496;
+        let t504 = t26 * t488 + t5 * t491 + minus_s_distal_leg2 * t496;
+        let t511 = minus_s_distal_leg3 * t488 + t18 * t491 + t78 * t496;
+        let t528 = t45 * t325 + minus_s_distal_leg2 * t233 + t78 * t231;
+        let t529 = t528 + t454;
+        let t531 = t448 * t448;
+        let t532 = t531 - t494;
+        let t535 = t440 - t490;
+        let t537 = t41 * t529 + minus_s_distal_leg1 * t532 + t45 * t535;
+        let t543 = t26 * t529 + t5 * t532 + minus_s_distal_leg2 * t535;
+        let t550 = minus_s_distal_leg3 * t529 + t18 * t532 + t78 * t535;
+        let t564 = t41 * t490;
+        let t566 = minus_s_distal_leg1 * t487 - t564 + t455;
+        let t569 = t26 * t490;
+        let t571 = t5 * t487 - t569 + t461;
+        let t575 = minus_s_distal_leg3 * t490;
+        let t577 = t18 * t487 - t575 + t468;
+        let t590 = t495 - t531;
+        let t592 = t528 - t454;
+        let t595 = t487 + t449;
+        let t597 = t41 * t590 + minus_s_distal_leg1 * t592 + t45 * t595;
+        let t603 = t26 * t590 + t5 * t592 + minus_s_distal_leg2 * t595;
+        let t610 = minus_s_distal_leg3 * t590 + t18 * t592 + t78 * t595;
+        let t625 = t564 - t450 + t45 * t528;
+        let t629 = t569 - t459 + minus_s_distal_leg2 * t528;
+        let t634 = t575 - t466 + t78 * t528;
+        let t648 = 9.81 * minus_s_distal_leg1;
+        let t657 = 9.81 * minus_s_distal_leg2;
         Ok([
             [
-                actuator_accelerations[0], -(9.81 * c_proximal_leg1), t23,
-                actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, -t152,
-                c_distal_leg1 * (t131 + t174) - minus_s_distal_leg1 * (t126 + t128)
-                    + t149 * t182,
-                -(c_distal_leg1 * (t150 - minus_rate_dot_distal_leg1_2)
-                    + minus_s_distal_leg1 * (t260 - t180) + t149 * t127),
-                actuator_accelerations[0] + t152,
-                minus_s_distal_leg1 * (t150 + minus_rate_dot_distal_leg1_2)
-                    - c_distal_leg1 * (t181 - t260) - t149 * t173,
-                -(t149 * minus_rate_dot_distal_leg1_2),
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t149 * t283,
-                -(9.81 * t5 + t149 * t290),
-                -t23,
+                actuator_accelerations[0], -t14, t20, actuator_accelerations[0],
+                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t138,
+                c_distal_leg1 * (t159 + t161) - minus_s_distal_leg1 * t117 + t134 * t168,
+                -(c_distal_leg1 * (t136 - minus_rate_dot_distal_leg1_2)
+                    + minus_s_distal_leg1 * (t241 - t166) + t134 * t115),
+                actuator_accelerations[0] + t138,
+                minus_s_distal_leg1 * (t136 + minus_rate_dot_distal_leg1_2)
+                    - c_distal_leg1 * (t167 - t241) - t134 * t160,
+                -(t134 * minus_rate_dot_distal_leg1_2),
+                minus_s_distal_leg1 * t14 - t134 * t263,
+                -(t268 + t134 * t269),
+                -t20,
                 0.0,
                 0.0,
                 0.0,
@@ -3240,105 +3146,105 @@ impl Spherical3Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t305,
-                t301 * t330,
-                -(t301 * t307),
-                t305,
-                -(t301 * t332),
-                -(t301 * minus_rate_dot_distal_leg2_2),
-                -(t301 * t375),
-                -(t301 * t383),
+                -t284,
+                t280 * t307,
+                -(t280 * t286),
+                t284,
+                -(t280 * t310),
+                -(t280 * minus_rate_dot_distal_leg2_2),
+                -(t280 * t352),
+                -(t280 * t358),
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t396,
-                t392 * t415,
-                -(t392 * t401),
-                t396,
-                -(t392 * t420),
-                t392 * rate_dot_distal_leg3,
-                -(t392 * t455),
-                t392 * t459,
-                t298 * t481 + t147 * t487 + t145 * t494,
-                t298 * t523 + t147 * t529 + t145 * t536,
-                t298 * t563 + t147 * t569 + t145 * t576,
-                t298 * t592 + t147 * t597 + t145 * t603,
-                t298 * t623 + t147 * t629 + t145 * t636,
-                t298 * t651 + t147 * t655 + t145 * t660,
-                t298 * t675 + t147 * t679,
-                t298 * t690 + t147 * t694,
-                t298 * t705 + t147 * t709,
+                -t371,
+                t367 * t388,
+                -(t367 * t377),
+                t371,
+                -(t367 * t393),
+                t367 * rate_dot_distal_leg3,
+                -(t367 * t428),
+                t433,
+                t277 * t456 + t132 * t462 + t130 * t469,
+                t277 * t498 + t132 * t504 + t130 * t511,
+                t277 * t537 + t132 * t543 + t130 * t550,
+                t277 * t566 + t132 * t571 + t130 * t577,
+                t277 * t597 + t132 * t603 + t130 * t610,
+                t277 * t625 + t132 * t629 + t130 * t634,
+                -t433,
+                t277 * t268 - t132 * t648,
+                t277 * t657 - t132 * t360,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t162, t161 * t182, -(t161 * t127), t162,
-                -(t161 * t173), -(t161 * minus_rate_dot_distal_leg1_2), -(t161 * t283),
-                -(t161 * t290), 0.0, actuator_accelerations[1], 9.81 * s_proximal_leg2, t296,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t148, t147 * t168, -(t147 * t115), t148,
+                -(t147 * t160), -(t147 * minus_rate_dot_distal_leg1_2), -(t147 * t263),
+                -(t147 * t269), 0.0, actuator_accelerations[1], t274, t275,
                 actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t320,
-                c_distal_leg2 * (t310 + t333) - minus_s_distal_leg2 * (t306 + t308)
-                    + t318 * t330,
-                -(c_distal_leg2 * (t304 - minus_rate_dot_distal_leg2_2)
-                    + minus_s_distal_leg2 * (t355 - t328) + t318 * t307),
-                actuator_accelerations[1] + t320,
-                minus_s_distal_leg2 * (t304 + minus_rate_dot_distal_leg2_2)
-                    - c_distal_leg2 * (t329 - t355) - t318 * t332,
-                -(t318 * minus_rate_dot_distal_leg2_2),
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t318 * t375),
-                9.81 * t60 - t318 * t383,
-                -t296,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t297,
+                c_distal_leg2 * (t309 + t310 + t309) - minus_s_distal_leg2 * t288
+                    + t295 * t307,
+                -(c_distal_leg2 * (t283 - minus_rate_dot_distal_leg2_2)
+                    + minus_s_distal_leg2 * (t332 - t305) + t295 * t286),
+                actuator_accelerations[1] + t297,
+                minus_s_distal_leg2 * (t283 + minus_rate_dot_distal_leg2_2)
+                    - c_distal_leg2 * (t306 - t332) - t295 * t310,
+                -(t295 * minus_rate_dot_distal_leg2_2),
+                -(minus_s_distal_leg2 * t274 + t295 * t352),
+                t360 - t295 * t358,
+                -t275,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
                 0.0,
-                -t400,
-                t399 * t415,
-                -(t399 * t401),
-                t400,
-                -(t399 * t420),
-                t399 * rate_dot_distal_leg3,
-                -(t399 * t455),
-                t399 * t459,
-                t315 * t481 + t159 * t487 + t155 * t494,
-                t315 * t523 + t159 * t529 + t155 * t536,
-                t315 * t563 + t159 * t569 + t155 * t576,
-                t315 * t592 + t159 * t597 + t155 * t603,
-                t315 * t623 + t159 * t629 + t155 * t636,
-                t315 * t651 + t159 * t655 + t155 * t660,
-                t315 * t675 + t159 * t679,
-                t315 * t690 + t159 * t694,
-                t315 * t705 + t159 * t709,
+                -t375,
+                t374 * t388,
+                -(t374 * t377),
+                t375,
+                -(t374 * t393),
+                t374 * rate_dot_distal_leg3,
+                -(t374 * t428),
+                t434,
+                t292 * t456 + t145 * t462 + t141 * t469,
+                t292 * t498 + t145 * t504 + t141 * t511,
+                t292 * t537 + t145 * t543 + t141 * t550,
+                t292 * t566 + t145 * t571 + t141 * t577,
+                t292 * t597 + t145 * t603 + t141 * t610,
+                t292 * t625 + t145 * t629 + t141 * t634,
+                -t434,
+                t292 * t268 - t145 * t648,
+                t292 * t657 - t145 * t360,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t172, t171 * t182, -(t171 * t127), t172,
-                -(t171 * t173), -(t171 * minus_rate_dot_distal_leg1_2), -(t171 * t283),
-                -(t171 * t290), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t327, t326 * t330,
-                -(t326 * t307), t327, -(t326 * t332), -(t326 * minus_rate_dot_distal_leg2_2),
-                -(t326 * t375), -(t326 * t383), 0.0, actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t158, t157 * t168, -(t157 * t115), t158,
+                -(t157 * t160), -(t157 * minus_rate_dot_distal_leg1_2), -(t157 * t263),
+                -(t157 * t269), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t304, t303 * t307,
+                -(t303 * t286), t304, -(t303 * t310), -(t303 * minus_rate_dot_distal_leg2_2),
+                -(t303 * t352), -(t303 * t358), 0.0, actuator_accelerations[2],
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, t412,
-                minus_s_distal_leg3 * (t402 + t403) - c_distal_leg3 * (t405 + t421)
-                    + t410 * t415,
-                -(c_distal_leg3 * (t395 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t436 - t413) + t410 * t401),
-                actuator_accelerations[2] - t412,
-                minus_s_distal_leg3 * (t395 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t414 - t436) - t410 * t420,
-                t410 * rate_dot_distal_leg3,
-                -(t410 * t455),
-                t410 * t459,
-                t323 * t481 + t169 * t487 + t165 * t494,
-                t323 * t523 + t169 * t529 + t165 * t536,
-                t323 * t563 + t169 * t569 + t165 * t576,
-                t323 * t592 + t169 * t597 + t165 * t603,
-                t323 * t623 + t169 * t629 + t165 * t636,
-                t323 * t651 + t169 * t655 + t165 * t660,
-                t323 * t675 + t169 * t679,
-                t323 * t690 + t169 * t694,
-                t323 * t705 + t169 * t709,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, t385,
+                minus_s_distal_leg3 * t379 - c_distal_leg3 * (t392 + t392 - t393)
+                    + t383 * t388,
+                -(c_distal_leg3 * (t370 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t409 - t386) + t383 * t377),
+                actuator_accelerations[2] - t385,
+                minus_s_distal_leg3 * (t370 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t387 - t409) - t383 * t393,
+                t383 * rate_dot_distal_leg3,
+                -(t383 * t428),
+                t435,
+                t300 * t456 + t155 * t462 + t151 * t469,
+                t300 * t498 + t155 * t504 + t151 * t511,
+                t300 * t537 + t155 * t543 + t151 * t550,
+                t300 * t566 + t155 * t571 + t151 * t577,
+                t300 * t597 + t155 * t603 + t151 * t610,
+                t300 * t625 + t155 * t629 + t151 * t634,
+                -t435,
+                t300 * t268 - t155 * t648,
+                t300 * t657 - t155 * t360,
             ],
         ])
     }
@@ -3352,7 +3258,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 471 operations (168 additions, 297 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 372 intermediates.
+    /// 426 operations (154 additions, 269 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 327 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3375,259 +3281,245 @@ impl Spherical3Rrr {
         let c_distal_leg3 = ::overact::math::sqrt(t11);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
         let t13 = 1.0 / c_distal_leg3;
-        let t15 = 1.0 / (t5 * c_distal_leg3);
-        let c_proximal_leg3 = t15 * (t5 * t5);
-        let t19 = pose[2] * t6;
-        let t20 = pose[0] * t3;
-        let t21 = t19 + t20;
-        let s_proximal_leg3 = t15 * (t5 * t21);
+        let c_proximal_leg3 = t5 * t13;
+        let t16 = pose[2] * t6;
+        let t17 = pose[0] * t3;
+        let t18 = t16 + t17;
+        let s_proximal_leg3 = t18 * t13;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t29 = minus_s_distal_leg3 * t13;
-        let t32 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
-        let t33 = t29 * t32;
-        let rate_proximal_leg3 = twist[2] - t33;
+        let t22 = minus_s_distal_leg3 * t13;
+        let t25 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t26 = t22 * t25;
+        let rate_proximal_leg3 = twist[2] - t26;
+        let t28 = c_distal_leg3 * rate_proximal_leg3;
+        let t35 = rate_distal_leg3 * rate_proximal_leg3;
         let t38 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t33;
-        let rate_dot_wrist_leg3 = t13 * t38;
-        let t40 = c_distal_leg3 * rate_proximal_leg3;
-        let t41 = rate_distal_leg3 * t40;
-        let rate_dot_proximal_leg3 = acceleration[2] + t32 * rate_distal_leg3
-            - t29 * t38;
-        let t46 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t47 = t41 - t46;
-        let t48 = rate_dot_wrist_leg3 - t47;
-        let minus_s_distal_leg1 = t19 - t20;
-        let t51 = pose[3] * t0;
-        let t52 = pose[0] * t6;
-        let minus_s_distal_leg2 = t51 - t52;
-        let t55 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t55, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t55);
-        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t57 = 1.0 / c_distal_leg2;
-        let t58 = minus_s_distal_leg2 * t57;
-        let t60 = 1.0 - pose[1] * t6;
-        let t61 = t60 - t1;
-        let t63 = 1.0 / (t61 * c_distal_leg2);
-        let t64 = t7 + t8;
-        let s_proximal_leg2 = t63 * (t64 * t61);
-        let c_proximal_leg2 = t63 * (t61 * t61);
-        let t71 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
-        let t72 = t58 * t71;
-        let rate_proximal_leg2 = twist[1] - t72;
-        let t74 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let rate_wrist_leg2 = t57 * t71;
-        let t76 = t74 + rate_wrist_leg2;
-        let t77 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let rate_wrist_leg3 = t13 * t32;
-        let t79 = t77 + rate_wrist_leg3;
-        let t80 = t76 * t79;
-        let t81 = minus_s_distal_leg1 * t80;
-        let t84 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t84, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t84);
+            + t35 - rate_distal_leg3 * t26;
+        let rate_dot_proximal_leg3 = acceleration[2] + t25 * rate_distal_leg3
+            - t22 * t38;
+        let t41 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t44 = t13 * t38 - (rate_distal_leg3 * t28 - t41);
+        let minus_s_distal_leg1 = t16 - t17;
+        let t47 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t49 = t47 + t13 * t25;
+        let t50 = pose[3] * t0;
+        let t51 = pose[0] * t6;
+        let minus_s_distal_leg2 = t50 - t51;
+        let t54 = t7 + t8;
+        let t57 = 1.0 - pose[1] * t6;
+        let t58 = t57 - t1;
+        let t60 = t54 * twist[0] + t58 * twist[2];
+        let t61 = minus_s_distal_leg2 * twist[1] + t60;
+        let t62 = t49 * t61;
+        let t63 = minus_s_distal_leg1 * t62;
+        let t66 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t66, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t66);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t86 = 1.0 / c_distal_leg1;
-        let t87 = minus_s_distal_leg1 * t86;
-        let t88 = t60 - t4;
-        let t90 = 1.0 / (t88 * c_distal_leg1);
-        let c_proximal_leg1 = t90 * (t88 * t88);
-        let t94 = t51 + t52;
-        let s_proximal_leg1 = t90 * (t88 * t94);
-        let t98 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
-        let t99 = t87 * t98;
-        let rate_proximal_leg1 = twist[0] - t99;
-        let t101 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let rate_wrist_leg1 = t86 * t98;
-        let t103 = t101 + rate_wrist_leg1;
-        let t104 = t103 * t79;
-        let t105 = t64 * t104;
-        let t108 = t88 * t80;
-        let t110 = minus_s_distal_leg2 * t104;
-        let t113 = t94 * t80;
-        let t115 = t61 * t104;
-        let t117 = t103 * t76;
-        let t118 = t117 + t48;
+        let t68 = 1.0 / c_distal_leg1;
+        let t69 = minus_s_distal_leg1 * t68;
+        let t70 = t57 - t4;
+        let c_proximal_leg1 = t68 * t70;
+        let t73 = t50 + t51;
+        let s_proximal_leg1 = t68 * t73;
+        let t76 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t77 = t69 * t76;
+        let rate_proximal_leg1 = twist[0] - t77;
+        let t79 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let rate_wrist_leg1 = t68 * t76;
+        let t81 = t79 + rate_wrist_leg1;
+        let t82 = t81 * t49;
+        let t83 = t54 * t82;
+        let t86 = t70 * t62;
+        let t88 = minus_s_distal_leg2 * t82;
+        let t91 = t73 * t62;
+        let t93 = t58 * t82;
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t131 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t99 - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_proximal_leg1 = acceleration[0] - t98 * minus_rate_distal_leg1
-            - t87 * t131;
-        let t134 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t135 = c_distal_leg1 * rate_proximal_leg1;
-        let t136 = minus_rate_distal_leg1 * t135;
-        let t137 = t134 + t136;
-        let rate_dot_wrist_leg1 = t86 * t131;
-        let t139 = t137 + rate_dot_wrist_leg1;
-        let t140 = t80 - t139;
-        let t143 = t79 * t79;
-        let t144 = t103 * t103;
-        let t145 = t143 - t144;
+        let t104 = minus_rate_distal_leg1 * rate_proximal_leg1;
+        let t106 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t77 - t104;
+        let rate_dot_proximal_leg1 = acceleration[0] - t76 * minus_rate_distal_leg1
+            - t69 * t106;
+        let t109 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t110 = c_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_wrist_leg1 = t68 * t106;
+        let t114 = t109 + minus_rate_distal_leg1 * t110 + rate_dot_wrist_leg1;
+        let t115 = t114 - t62;
+        let t117 = t81 * t61;
+        let t118 = t44 + t117;
+        let t121 = t49 * t49;
+        let t122 = t81 * t81;
+        let t123 = t121 - t122;
+        let t137 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t137, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t137);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t139 = 1.0 / c_distal_leg2;
+        let t140 = t139 * t60;
+        let s_proximal_leg2 = t54 * t139;
+        let c_proximal_leg2 = t58 * t139;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t169 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t72 - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t71 * minus_rate_distal_leg2
-            - t58 * t169;
-        let t172 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t173 = c_distal_leg2 * rate_proximal_leg2;
-        let t174 = minus_rate_distal_leg2 * t173;
-        let t175 = t172 + t174;
-        let rate_dot_wrist_leg2 = t57 * t169;
-        let t177 = t175 + rate_dot_wrist_leg2;
-        let t178 = t104 + t177;
-        let t180 = t76 * t76;
-        let t181 = t180 - t143;
-        let t184 = t117 - t48;
-        let t198 = t5 * t117;
-        let t202 = t21 * t117;
-        let t206 = minus_s_distal_leg3 * t117;
-        let t209 = t144 - t180;
-        let t211 = t104 - t177;
-        let t214 = t80 + t139;
-        let t236 = 9.81 * t94;
-        let t238 = 9.81 * t61;
-        let t245 = 9.81 * minus_s_distal_leg3;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t87;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t87;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t58;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t58;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t29;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t29;
-        let t269 = 9.81 * c_proximal_leg1;
-        let t271 = minus_gproximal_wz_leg1 * t269;
-        let t272 = 9.81 * s_proximal_leg2;
-        let t274 = minus_gproximal_wz_leg2 * t272;
-        let t275 = 9.81 * s_proximal_leg1;
-        let t277 = 9.81 * c_proximal_leg2;
-        let t294 = minus_rate_distal_leg1 * t101;
-        let t295 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t296 = t294 - t295;
-        let t299 = c_distal_leg1 * t296 + minus_s_distal_leg1 * t136;
-        let t301 = t135 * t101;
-        let t307 = minus_rate_distal_leg2 * t74;
-        let t308 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t309 = t307 - t308;
-        let t312 = c_distal_leg2 * t309 + minus_s_distal_leg2 * t174;
-        let t314 = t173 * t74;
-        let t320 = t40 * t77;
-        let t322 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t323 = rate_distal_leg3 * t77;
-        let t324 = t322 + t323;
-        let t327 = c_distal_leg3 * t324 + minus_s_distal_leg3 * t41;
-        let t337 = c_distal_leg1 * (t136 + t137) - minus_s_distal_leg1 * (t294 + t296);
-        let t339 = t135 * t135;
-        let t340 = t101 * t101;
-        let t341 = t339 - t340;
-        let t347 = t173 * t173;
-        let t348 = t74 * t74;
-        let t349 = t347 - t348;
-        let t355 = c_distal_leg2 * (t174 + t175) - minus_s_distal_leg2 * (t307 + t309);
-        let t365 = minus_s_distal_leg3 * (t323 + t324) - c_distal_leg3 * (t41 + t47);
-        let t367 = t40 * t40;
-        let t368 = t77 * t77;
-        let t369 = t367 - t368;
+        let t148 = minus_s_distal_leg2 * t139;
+        let t152 = t148 * t140;
+        let rate_proximal_leg2 = twist[1] - t152;
+        let t155 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let t157 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+            + minus_rate_distal_leg2 * t152 - t155;
+        let rate_dot_proximal_leg2 = acceleration[1] - t140 * minus_rate_distal_leg2
+            - t148 * t157;
+        let t160 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t161 = c_distal_leg2 * rate_proximal_leg2;
+        let t165 = t160 + minus_rate_distal_leg2 * t161 + t139 * t157;
+        let t166 = t165 + t82;
+        let t168 = t61 * t61;
+        let t169 = t168 - t121;
+        let t172 = t44 - t117;
+        let t186 = t5 * t117;
+        let t190 = t18 * t117;
+        let t194 = minus_s_distal_leg3 * t117;
+        let t197 = t122 - t168;
+        let t199 = t165 - t82;
+        let t202 = t114 + t62;
+        let t224 = 9.81 * t18;
+        let t225 = 9.81 * t5;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t69;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t69;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t148;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t148;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t22;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t22;
+        let t242 = 9.81 * c_proximal_leg1;
+        let t244 = minus_gproximal_wz_leg1 * t242;
+        let t245 = 9.81 * s_proximal_leg2;
+        let t247 = minus_gproximal_wz_leg2 * t245;
+        let t248 = 9.81 * s_proximal_leg1;
+        let t250 = 9.81 * c_proximal_leg2;
+        let t267 = minus_rate_distal_leg1 * t79;
+        let t268 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t270 = t267 + t267 - t268;
+        let t271 = c_distal_leg1 * t270;
+        let t273 = t110 * t79;
+        let t279 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t280 = minus_rate_distal_leg2 * t279;
+        let t281 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t283 = t280 + t280 - t281;
+        let t284 = c_distal_leg2 * t283;
+        let t286 = t161 * t279;
+        let t292 = t28 * t47;
+        let t294 = rate_distal_leg3 * t47;
+        let t295 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t297 = t294 + t295 + t294;
+        let t298 = c_distal_leg3 * t297;
+        let t306 = 2.0 * (t104 - minus_s_distal_leg1 * t270);
+        let t308 = t110 * t110;
+        let t309 = t79 * t79;
+        let t310 = t308 - t309;
+        let t316 = t161 * t161;
+        let t317 = t279 * t279;
+        let t318 = t316 - t317;
+        let t322 = 2.0 * (t155 - minus_s_distal_leg2 * t283);
+        let t330 = 2.0 * (t35 - minus_s_distal_leg3 * t297);
+        let t332 = t28 * t28;
+        let t333 = t47 * t47;
+        let t334 = t332 - t333;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t98 * rate_proximal_leg1;
-        let t382 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t385 = c_distal_leg1 * (t301 - minus_rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t382 - t339);
+            - c_proximal_leg1 * acceleration[2] + t76 * rate_proximal_leg1;
+        let t347 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t350 = c_distal_leg1 * (t273 - minus_rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t347 - t308);
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t71 * rate_proximal_leg2;
-        let t399 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t402 = c_distal_leg2 * (t314 - minus_rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t399 - t347);
+            - c_proximal_leg2 * acceleration[0] + t140 * rate_proximal_leg2;
+        let t364 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t367 = c_distal_leg2 * (t286 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t364 - t316);
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t32 * rate_proximal_leg3;
-        let t416 = rate_distal_leg3 * rate_distal_leg3;
-        let t419 = c_distal_leg3 * (t320 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t416 - t367);
-        let t430 = minus_s_distal_leg1 * (t301 + minus_rate_dot_distal_leg1)
-            - c_distal_leg1 * (t340 - t382);
-        let t441 = minus_s_distal_leg2 * (t314 + minus_rate_dot_distal_leg2)
-            - c_distal_leg2 * (t348 - t399);
-        let t453 = minus_s_distal_leg3 * (t320 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t368 - t416);
-        let t460 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t470 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+            - s_proximal_leg3 * acceleration[0] - t25 * rate_proximal_leg3;
+        let t381 = rate_distal_leg3 * rate_distal_leg3;
+        let t384 = c_distal_leg3 * (t292 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t381 - t332);
+        let t395 = minus_s_distal_leg1 * (t273 + minus_rate_dot_distal_leg1)
+            - c_distal_leg1 * (t309 - t347);
+        let t406 = minus_s_distal_leg2 * (t286 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t317 - t364);
+        let t418 = minus_s_distal_leg3 * (t292 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t333 - t381);
+        let t424 = minus_s_distal_leg1 * t242;
+        let t430 = minus_s_distal_leg2 * t245;
         Ok([
             [
-                t5 * t48 + t81 - t105, minus_s_distal_leg1 * t118 - t5 * t140 + t64 * t145,
-                t5 * t178 + minus_s_distal_leg1 * t181 - t64 * t184,
-                minus_s_distal_leg1 * t139 - t198 + t105,
-                t5 * t209 - minus_s_distal_leg1 * t211 + t64 * t214, t198 - t81 + t64 * t177,
-                t64 * t236 - minus_s_distal_leg1 * t238, t5 * t238 - t64 * t245,
-                minus_s_distal_leg1 * t245 - t5 * t236, rate_dot_proximal_leg1,
+                t5 * t44 + t63 - t83, t5 * t115 + minus_s_distal_leg1 * t118 + t54 * t123,
+                t5 * t166 + minus_s_distal_leg1 * t169 + t54 * t172,
+                minus_s_distal_leg1 * t114 - t186 + t83,
+                t5 * t197 + minus_s_distal_leg1 * t199 + t54 * t202, t186 - t63 + t54 * t165, t224,
+                9.81 * t70, 9.81 * minus_s_distal_leg2, rate_dot_proximal_leg1,
                 -(minus_gproximal_wx_leg2 * rate_dot_proximal_leg2),
-                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t269,
-                -(minus_gproximal_wx_leg2 * t272), t275, -t274, rate_proximal_leg1,
+                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t242,
+                -(minus_gproximal_wx_leg2 * t245), t248, -t247, rate_proximal_leg1,
                 -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 ::overact::math::sign(rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3), 1.0,
-                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, -t299,
-                minus_gproximal_wx_leg2 * t312 - c_proximal_leg2 * t314,
-                s_proximal_leg3 * t320 - minus_gproximal_wx_leg3 * t327, t337,
-                c_proximal_leg2 * t349 - minus_gproximal_wx_leg2 * t355,
-                -(minus_gproximal_wx_leg3 * t365 + s_proximal_leg3 * t369), -t385,
-                minus_gproximal_wx_leg2 * t402 - c_proximal_leg2 * t308,
-                minus_gproximal_wx_leg3 * t419 + s_proximal_leg3 * t322, t430,
-                -(minus_gproximal_wx_leg2 * t441 + c_proximal_leg2 * t172),
-                s_proximal_leg3 * t46 - minus_gproximal_wx_leg3 * t453, t460,
-                minus_gproximal_wx_leg2 * t470 - 9.81 * (t61 * c_proximal_leg2),
-                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
+                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, -t271,
+                minus_gproximal_wx_leg2 * t284 - c_proximal_leg2 * t286,
+                s_proximal_leg3 * t292 - minus_gproximal_wx_leg3 * t298, t306,
+                c_proximal_leg2 * t318 - minus_gproximal_wx_leg2 * t322,
+                -(s_proximal_leg3 * t334 - minus_gproximal_wx_leg3 * t330), -t350,
+                minus_gproximal_wx_leg2 * t367 - c_proximal_leg2 * t281,
+                minus_gproximal_wx_leg3 * t384 + s_proximal_leg3 * t295, t395,
+                -(minus_gproximal_wx_leg2 * t406 + c_proximal_leg2 * t160),
+                s_proximal_leg3 * t41 - minus_gproximal_wx_leg3 * t418, t424,
+                minus_gproximal_wx_leg2 * t430 - t58 * t250, t224 * t22,
             ],
             [
-                t21 * t48 + t108 - t110, t88 * t118 - t21 * t140 + minus_s_distal_leg2 * t145,
-                t21 * t178 + t88 * t181 - minus_s_distal_leg2 * t184, t88 * t139 - t202 + t110,
-                t21 * t209 - t88 * t211 + minus_s_distal_leg2 * t214,
-                t202 - t108 + minus_s_distal_leg2 * t177, minus_s_distal_leg2 * t236 - t88 * t238,
-                t21 * t238 - minus_s_distal_leg2 * t245, t88 * t245 - t21 * t236,
-                -(minus_gproximal_wy_leg1 * rate_dot_proximal_leg1), rate_dot_proximal_leg2,
-                -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3), minus_gproximal_wy_leg1 * t269,
-                t272, -t271, t277, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
-                rate_proximal_leg2, -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
+                t18 * t44 + t86 - t88, t18 * t115 + t70 * t118 + minus_s_distal_leg2 * t123,
+                t18 * t166 + t70 * t169 + minus_s_distal_leg2 * t172, t70 * t114 - t190 + t88,
+                t18 * t197 + t70 * t199 + minus_s_distal_leg2 * t202,
+                t190 - t86 + minus_s_distal_leg2 * t165, -t225, -(9.81 * minus_s_distal_leg1),
+                -(9.81 * t54), -(minus_gproximal_wy_leg1 * rate_dot_proximal_leg1),
+                rate_dot_proximal_leg2, -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3),
+                minus_gproximal_wy_leg1 * t242, t245, -t244, t250,
+                -(minus_gproximal_wy_leg1 * rate_proximal_leg1), rate_proximal_leg2,
+                -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
                 ::overact::math::sign(rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
                 -minus_gproximal_wy_leg1, 1.0, -minus_gproximal_wy_leg3,
-                minus_gproximal_wy_leg1 * t299 + s_proximal_leg1 * t301, -t312,
-                -(minus_gproximal_wy_leg3 * t327 + c_proximal_leg3 * t320),
-                -(minus_gproximal_wy_leg1 * t337 + s_proximal_leg1 * t341), t355,
-                c_proximal_leg3 * t369 - minus_gproximal_wy_leg3 * t365,
-                minus_gproximal_wy_leg1 * t385 + s_proximal_leg1 * t295, -t402,
-                minus_gproximal_wy_leg3 * t419 - c_proximal_leg3 * t322,
-                s_proximal_leg1 * t134 - minus_gproximal_wy_leg1 * t430, t441,
-                -(minus_gproximal_wy_leg3 * t453 + c_proximal_leg3 * t46),
-                9.81 * (t94 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t460, -t470,
-                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
+                minus_gproximal_wy_leg1 * t271 + s_proximal_leg1 * t273, -t284,
+                -(minus_gproximal_wy_leg3 * t298 + c_proximal_leg3 * t292),
+                -(minus_gproximal_wy_leg1 * t306 + s_proximal_leg1 * t310), t322,
+                c_proximal_leg3 * t334 + minus_gproximal_wy_leg3 * t330,
+                minus_gproximal_wy_leg1 * t350 + s_proximal_leg1 * t268, -t367,
+                minus_gproximal_wy_leg3 * t384 - c_proximal_leg3 * t295,
+                s_proximal_leg1 * t109 - minus_gproximal_wy_leg1 * t395, t406,
+                -(minus_gproximal_wy_leg3 * t418 + c_proximal_leg3 * t41),
+                t73 * t248 - minus_gproximal_wy_leg1 * t424, -t430, -(t22 * t225),
             ],
             [
-                minus_s_distal_leg3 * t48 + t113 - t115,
-                t94 * t118 - minus_s_distal_leg3 * t140 + t61 * t145,
-                minus_s_distal_leg3 * t178 + t94 * t181 - t61 * t184, t94 * t139 - t206 + t115,
-                minus_s_distal_leg3 * t209 - t94 * t211 + t61 * t214, t206 - t113 + t61 * t177, 0.0,
+                minus_s_distal_leg3 * t44 + t91 - t93,
+                minus_s_distal_leg3 * t115 + t73 * t118 + t58 * t123,
+                minus_s_distal_leg3 * t166 + t73 * t169 + t58 * t172, t73 * t114 - t194 + t93,
+                minus_s_distal_leg3 * t197 + t73 * t199 + t58 * t202, t194 - t91 + t58 * t165, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * rate_dot_proximal_leg1),
-                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t271,
-                -t274, -(minus_gproximal_wz_leg1 * t275), -(minus_gproximal_wz_leg2 * t277),
+                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t244,
+                -t247, -(minus_gproximal_wz_leg1 * t248), -(minus_gproximal_wz_leg2 * t250),
                 -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2), rate_proximal_leg3,
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
                 ::overact::math::sign(rate_proximal_leg3), -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2, 1.0,
-                minus_gproximal_wz_leg1 * t299 - c_proximal_leg1 * t301,
-                minus_gproximal_wz_leg2 * t312 + s_proximal_leg2 * t314, t327,
-                c_proximal_leg1 * t341 - minus_gproximal_wz_leg1 * t337,
-                -(minus_gproximal_wz_leg2 * t355 + s_proximal_leg2 * t349), t365,
-                minus_gproximal_wz_leg1 * t385 - c_proximal_leg1 * t295,
-                minus_gproximal_wz_leg2 * t402 + s_proximal_leg2 * t308, -t419,
-                -(minus_gproximal_wz_leg1 * t430 + c_proximal_leg1 * t134),
-                s_proximal_leg2 * t172 - minus_gproximal_wz_leg2 * t441, t453,
-                -(minus_gproximal_wz_leg1 * t460 + 9.81 * (t88 * s_proximal_leg1)),
-                minus_gproximal_wz_leg2 * t470 + 9.81 * (t64 * c_proximal_leg2), 0.0,
+                minus_gproximal_wz_leg1 * t271 - c_proximal_leg1 * t273,
+                minus_gproximal_wz_leg2 * t284 + s_proximal_leg2 * t286, t298,
+                c_proximal_leg1 * t310 - minus_gproximal_wz_leg1 * t306,
+                -(minus_gproximal_wz_leg2 * t322 + s_proximal_leg2 * t318), -t330,
+                minus_gproximal_wz_leg1 * t350 - c_proximal_leg1 * t268,
+                minus_gproximal_wz_leg2 * t367 + s_proximal_leg2 * t281, -t384,
+                -(minus_gproximal_wz_leg1 * t395 + c_proximal_leg1 * t109),
+                s_proximal_leg2 * t160 - minus_gproximal_wz_leg2 * t406, t418,
+                -(t248 * (t68 * c_proximal_leg1)), t250 * (s_proximal_leg2 * t139), 0.0,
             ],
         ])
     }
@@ -3642,7 +3534,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 457 operations (171 additions, 283 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 367 intermediates.
+    /// 425 operations (154 additions, 266 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 335 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3696,210 +3588,201 @@ impl Spherical3Rrr {
         let t53 = t29 * t47;
         let t56 = t44 * t37;
         let t58 = t34 * t47;
-        let t60 = t46 * t36;
-        let t61 = t60 + t17;
-        let t67 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
-        let t68 = t37 - t67;
+        let t64 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
+        let t65 = t64 - t37;
+        let t67 = t46 * t36;
+        let t68 = t17 + t67;
         let t71 = t24 * t24;
         let t72 = t46 * t46;
         let t73 = t71 - t72;
         let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
-        let t91 = t47 + t90;
+        let t91 = t90 + t47;
         let t93 = t36 * t36;
         let t94 = t93 - t71;
-        let t97 = t60 - t17;
-        let t111 = t5 * t60;
-        let t115 = t10 * t60;
-        let t119 = t15 * t60;
+        let t97 = t17 - t67;
+        let t111 = t5 * t67;
+        let t115 = t10 * t67;
+        let t119 = t15 * t67;
         let t122 = t72 - t93;
-        let t124 = t47 - t90;
-        let t127 = t37 + t67;
-        let t149 = 9.81 * t44;
-        let t151 = 9.81 * t34;
-        let t158 = 9.81 * t15;
-        let t174 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let t124 = t90 - t47;
+        let t127 = t64 + t37;
+        let t159 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
             - minus_c_proximal_leg1 * twist[2];
-        let t182 = c_distal_leg1 / minus_s_distal_leg1;
-        let t183 = t182 * t174;
-        let rate_proximal_leg1 = t183 + twist[0];
-        let rate_dot_proximal_leg1 = acceleration[0] - t174 * minus_rate_distal_leg1
-            - t182
-                * (minus_rate_distal_leg1 * rate_proximal_leg1
-                    + minus_rate_distal_leg1 * t183
+        let t167 = c_distal_leg1 / minus_s_distal_leg1;
+        let t168 = t167 * t159;
+        let rate_proximal_leg1 = t168 + twist[0];
+        let t170 = minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t159 * minus_rate_distal_leg1
+            - t167
+                * (t170 + minus_rate_distal_leg1 * t168
                     - (minus_c_proximal_leg1 * acceleration[1]
                         + minus_s_proximal_leg1 * acceleration[2]));
-        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t182;
-        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t182;
-        let t202 = c_distal_leg2 / minus_s_distal_leg2;
-        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t202;
-        let t206 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let gproximal_wy_leg1 = minus_c_proximal_leg1 * t167;
+        let gproximal_wz_leg1 = minus_s_proximal_leg1 * t167;
+        let t187 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t187;
+        let t191 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
             - minus_c_proximal_leg2 * twist[0];
-        let t212 = t202 * t206;
-        let rate_proximal_leg2 = t212 + twist[1];
-        let rate_dot_proximal_leg2 = acceleration[1] - t206 * minus_rate_distal_leg2
-            - t202
-                * (minus_rate_distal_leg2 * rate_proximal_leg2
-                    + minus_rate_distal_leg2 * t212
+        let t197 = t187 * t191;
+        let rate_proximal_leg2 = t197 + twist[1];
+        let t199 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t191 * minus_rate_distal_leg2
+            - t187
+                * (t199 + minus_rate_distal_leg2 * t197
                     - (minus_s_proximal_leg2 * acceleration[0]
                         + minus_c_proximal_leg2 * acceleration[2]));
-        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t202;
-        let t230 = c_distal_leg3 / minus_s_distal_leg3;
-        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t230;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t187;
+        let t215 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t215;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t240 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
-        let t241 = t230 * t240;
-        let rate_proximal_leg3 = t241 + twist[2];
-        let rate_dot_proximal_leg3 = t230
+        let t225 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t226 = t215 * t225;
+        let rate_proximal_leg3 = t226 + twist[2];
+        let t228 = rate_distal_leg3 * rate_proximal_leg3;
+        let rate_dot_proximal_leg3 = t215
             * (minus_c_proximal_leg3 * acceleration[0]
-                + minus_s_proximal_leg3 * acceleration[1]
-                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t241)
-            + acceleration[2] + t240 * rate_distal_leg3;
-        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t230;
-        let t254 = 9.81 * minus_c_proximal_leg1;
-        let t256 = gproximal_wz_leg1 * t254;
-        let t257 = 9.81 * minus_s_proximal_leg2;
-        let t259 = gproximal_wz_leg2 * t257;
-        let t260 = 9.81 * minus_s_proximal_leg1;
-        let t262 = 9.81 * minus_c_proximal_leg2;
-        let t279 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t280 = c_distal_leg1 * rate_proximal_leg1;
-        let t281 = minus_rate_distal_leg1 * t280;
-        let t282 = t279 + t281;
-        let t284 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t285 = minus_rate_distal_leg1 * t284;
-        let t287 = minus_s_distal_leg1 * t282 + c_distal_leg1 * t285;
-        let t289 = t284 * t280;
-        let t295 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t296 = c_distal_leg2 * rate_proximal_leg2;
-        let t297 = minus_rate_distal_leg2 * t296;
-        let t298 = t295 + t297;
-        let t300 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t301 = minus_rate_distal_leg2 * t300;
-        let t303 = minus_s_distal_leg2 * t298 + c_distal_leg2 * t301;
-        let t305 = t300 * t296;
-        let t311 = c_distal_leg3 * rate_proximal_leg3;
-        let t312 = rate_distal_leg3 * t311;
-        let t313 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t314 = t312 - t313;
-        let t316 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t317 = rate_distal_leg3 * t316;
-        let t319 = minus_s_distal_leg3 * t314 + c_distal_leg3 * t317;
-        let t321 = t316 * t311;
-        let t327 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t333 = minus_s_distal_leg1 * (t285 - (t327 - t285))
-            - c_distal_leg1 * (t281 + t282);
-        let t335 = t284 * t284;
-        let t336 = t280 * t280;
-        let t337 = t335 - t336;
-        let t343 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t349 = minus_s_distal_leg2 * (t301 - (t343 - t301))
-            - c_distal_leg2 * (t297 + t298);
-        let t351 = t300 * t300;
-        let t352 = t296 * t296;
-        let t353 = t351 - t352;
-        let t361 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t365 = c_distal_leg3 * (t312 + t314)
-            - minus_s_distal_leg3 * (t317 + t361 + t317);
-        let t367 = t316 * t316;
-        let t368 = t311 * t311;
-        let t369 = t367 - t368;
+                + minus_s_proximal_leg3 * acceleration[1] + t228
+                + rate_distal_leg3 * t226) + acceleration[2] + t225 * rate_distal_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t215;
+        let t239 = 9.81 * minus_c_proximal_leg1;
+        let t241 = gproximal_wz_leg1 * t239;
+        let t242 = 9.81 * minus_s_proximal_leg2;
+        let t244 = gproximal_wz_leg2 * t242;
+        let t245 = 9.81 * minus_s_proximal_leg1;
+        let t247 = 9.81 * minus_c_proximal_leg2;
+        let t264 = c_distal_leg1 * rate_proximal_leg1;
+        let t265 = minus_rate_distal_leg1 * t264;
+        let t266 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t268 = t265 + t266 + t265;
+        let t269 = minus_s_distal_leg1 * t268;
+        let t271 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t272 = t271 * t264;
+        let t278 = c_distal_leg2 * rate_proximal_leg2;
+        let t279 = minus_rate_distal_leg2 * t278;
+        let t280 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t282 = t279 + t280 + t279;
+        let t283 = minus_s_distal_leg2 * t282;
+        let t285 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t286 = t285 * t278;
+        let t292 = c_distal_leg3 * rate_proximal_leg3;
+        let t293 = rate_distal_leg3 * t292;
+        let t294 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t296 = t293 + t293 - t294;
+        let t297 = minus_s_distal_leg3 * t296;
+        let t299 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t300 = t299 * t292;
+        let t308 = 2.0 * (t170 - c_distal_leg1 * t268);
+        let t310 = t271 * t271;
+        let t311 = t264 * t264;
+        let t312 = t310 - t311;
+        let t320 = 2.0 * (t199 - c_distal_leg2 * t282);
+        let t322 = t285 * t285;
+        let t323 = t278 * t278;
+        let t324 = t322 - t323;
+        let t332 = 2.0 * (t228 - c_distal_leg3 * t296);
+        let t334 = t299 * t299;
+        let t335 = t292 * t292;
+        let t336 = t334 - t335;
         let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
-            - minus_c_proximal_leg1 * acceleration[2] + t174 * rate_proximal_leg1;
-        let t382 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t385 = minus_s_distal_leg1 * (t289 + minus_rate_dot_distal_leg1)
-            + c_distal_leg1 * (t382 - t335);
+            - minus_c_proximal_leg1 * acceleration[2] + t159 * rate_proximal_leg1;
+        let t349 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t352 = minus_s_distal_leg1 * (t272 + minus_rate_dot_distal_leg1)
+            + c_distal_leg1 * (t349 - t310);
         let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
-            - minus_c_proximal_leg2 * acceleration[0] + t206 * rate_proximal_leg2;
-        let t399 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t402 = minus_s_distal_leg2 * (t305 + minus_rate_dot_distal_leg2)
-            + c_distal_leg2 * (t399 - t351);
-        let t409 = rate_distal_leg3 * rate_distal_leg3;
+            - minus_c_proximal_leg2 * acceleration[0] + t191 * rate_proximal_leg2;
+        let t366 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t369 = minus_s_distal_leg2 * (t286 + minus_rate_dot_distal_leg2)
+            + c_distal_leg2 * (t366 - t322);
+        let t376 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
-            - minus_s_proximal_leg3 * acceleration[0] - t240 * rate_proximal_leg3;
-        let t419 = c_distal_leg3 * (t409 - t367)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t321);
-        let t430 = minus_s_distal_leg1 * (t336 - t382)
-            + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t289);
-        let t442 = minus_s_distal_leg2 * (t352 - t399)
-            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t305);
-        let t452 = c_distal_leg3 * (t321 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t368 - t409);
-        let t459 = c_distal_leg1 * t254;
-        let t460 = minus_s_distal_leg1 * t260;
-        let t467 = c_distal_leg2 * t257;
-        let t469 = minus_s_distal_leg2 * t262;
-        let t475 = 9.81 * c_distal_leg3;
+            - minus_s_proximal_leg3 * acceleration[0] - t225 * rate_proximal_leg3;
+        let t386 = c_distal_leg3 * (t376 - t334)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t300);
+        let t397 = minus_s_distal_leg1 * (t311 - t349)
+            + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t272);
+        let t399 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t405 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t411 = minus_s_distal_leg2 * (t323 - t366)
+            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t286);
+        let t421 = c_distal_leg3 * (t300 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t335 - t376);
+        let t423 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t429 = c_distal_leg1 * t239;
+        let t436 = c_distal_leg2 * t242;
+        let t443 = 9.81 * c_distal_leg3;
         Ok([
             [
-                t5 * t17 + t38 - t48, t19 * t61 - t5 * t68 + t25 * t73,
-                t5 * t91 + t19 * t94 - t25 * t97, t19 * t67 - t111 + t48,
-                t5 * t122 - t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
-                t25 * t149 - t19 * t151, t5 * t151 - t25 * t158, t19 * t158 - t5 * t149,
-                rate_dot_proximal_leg1, gproximal_wx_leg2 * rate_dot_proximal_leg2,
-                gproximal_wx_leg3 * rate_dot_proximal_leg3, -t254, gproximal_wx_leg2 * t257, t260,
-                t259, rate_proximal_leg1, gproximal_wx_leg2 * rate_proximal_leg2,
+                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
+                t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
+                t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90, 9.81 * t10, 9.81 * t41,
+                9.81 * t29, rate_dot_proximal_leg1, gproximal_wx_leg2 * rate_dot_proximal_leg2,
+                gproximal_wx_leg3 * rate_dot_proximal_leg3, -t239, gproximal_wx_leg2 * t242, t245,
+                t244, rate_proximal_leg1, gproximal_wx_leg2 * rate_proximal_leg2,
                 gproximal_wx_leg3 * rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg1),
                 ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2),
                 ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3), 1.0,
-                gproximal_wx_leg2, gproximal_wx_leg3, t287,
-                gproximal_wx_leg2 * t303 + minus_c_proximal_leg2 * t305,
-                -(gproximal_wx_leg3 * t319 + minus_s_proximal_leg3 * t321), t333,
-                gproximal_wx_leg2 * t349 + minus_c_proximal_leg2 * t353,
-                gproximal_wx_leg3 * t365 - minus_s_proximal_leg3 * t369, t385,
-                gproximal_wx_leg2 * t402 - minus_c_proximal_leg2 * t295,
-                gproximal_wx_leg3 * t419 + minus_s_proximal_leg3 * t313, -t430,
-                minus_c_proximal_leg2 * t343 - gproximal_wx_leg2 * t442,
-                gproximal_wx_leg3 * t452 - minus_s_proximal_leg3 * t361, -t459,
-                gproximal_wx_leg2 * t467 - minus_c_proximal_leg2 * t469,
-                -(minus_s_proximal_leg3 * t475),
+                gproximal_wx_leg2, gproximal_wx_leg3, t269,
+                gproximal_wx_leg2 * t283 + minus_c_proximal_leg2 * t286,
+                -(gproximal_wx_leg3 * t297 + minus_s_proximal_leg3 * t300), t308,
+                gproximal_wx_leg2 * t320 + minus_c_proximal_leg2 * t324,
+                -(gproximal_wx_leg3 * t332 + minus_s_proximal_leg3 * t336), t352,
+                gproximal_wx_leg2 * t369 - minus_c_proximal_leg2 * t280,
+                gproximal_wx_leg3 * t386 + minus_s_proximal_leg3 * t294, -t397,
+                minus_c_proximal_leg2 * t405 - gproximal_wx_leg2 * t411,
+                gproximal_wx_leg3 * t421 - minus_s_proximal_leg3 * t423, -t429,
+                gproximal_wx_leg2 * t436
+                    - minus_c_proximal_leg2 * (minus_s_distal_leg2 * t247),
+                -(minus_s_proximal_leg3 * t443),
             ],
             [
-                t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + t29 * t73,
-                t10 * t91 + t41 * t94 - t29 * t97, t41 * t67 - t115 + t53,
-                t10 * t122 - t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
-                t29 * t149 - t41 * t151, t10 * t151 - t29 * t158, t41 * t158 - t10 * t149,
-                gproximal_wy_leg1 * rate_dot_proximal_leg1, rate_dot_proximal_leg2,
-                gproximal_wy_leg3 * rate_dot_proximal_leg3, -(gproximal_wy_leg1 * t254), t257, t256,
-                t262, gproximal_wy_leg1 * rate_proximal_leg1, rate_proximal_leg2,
+                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
+                t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
+                t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90, -(9.81 * t5),
+                -(9.81 * t19), -(9.81 * t25), gproximal_wy_leg1 * rate_dot_proximal_leg1,
+                rate_dot_proximal_leg2, gproximal_wy_leg3 * rate_dot_proximal_leg3,
+                -(gproximal_wy_leg1 * t239), t242, t241, t247,
+                gproximal_wy_leg1 * rate_proximal_leg1, rate_proximal_leg2,
                 gproximal_wy_leg3 * rate_proximal_leg3,
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1),
                 ::overact::math::sign(rate_proximal_leg2),
                 ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3), gproximal_wy_leg1,
-                1.0, gproximal_wy_leg3, gproximal_wy_leg1 * t287 - minus_s_proximal_leg1 * t289,
-                t303, minus_c_proximal_leg3 * t321 - gproximal_wy_leg3 * t319,
-                gproximal_wy_leg1 * t333 - minus_s_proximal_leg1 * t337, t349,
-                gproximal_wy_leg3 * t365 + minus_c_proximal_leg3 * t369,
-                gproximal_wy_leg1 * t385 + minus_s_proximal_leg1 * t279, t402,
-                gproximal_wy_leg3 * t419 - minus_c_proximal_leg3 * t313,
-                -(gproximal_wy_leg1 * t430 + minus_s_proximal_leg1 * t327), -t442,
-                gproximal_wy_leg3 * t452 + minus_c_proximal_leg3 * t361,
-                minus_s_proximal_leg1 * t460 - gproximal_wy_leg1 * t459, t467,
-                minus_c_proximal_leg3 * t475,
+                1.0, gproximal_wy_leg3, gproximal_wy_leg1 * t269 - minus_s_proximal_leg1 * t272,
+                t283, minus_c_proximal_leg3 * t300 - gproximal_wy_leg3 * t297,
+                gproximal_wy_leg1 * t308 - minus_s_proximal_leg1 * t312, t320,
+                minus_c_proximal_leg3 * t336 - gproximal_wy_leg3 * t332,
+                gproximal_wy_leg1 * t352 + minus_s_proximal_leg1 * t266, t369,
+                gproximal_wy_leg3 * t386 - minus_c_proximal_leg3 * t294,
+                -(gproximal_wy_leg1 * t397 + minus_s_proximal_leg1 * t399), -t411,
+                gproximal_wy_leg3 * t421 + minus_c_proximal_leg3 * t423,
+                minus_s_proximal_leg1 * (minus_s_distal_leg1 * t245)
+                    - gproximal_wy_leg1 * t429,
+                t436,
+                minus_c_proximal_leg3 * t443,
             ],
             [
-                t15 * t17 + t56 - t58, t44 * t61 - t15 * t68 + t34 * t73,
-                t15 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
-                t15 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
+                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
+                t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
+                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
                 gproximal_wz_leg1 * rate_dot_proximal_leg1,
-                gproximal_wz_leg2 * rate_dot_proximal_leg2, rate_dot_proximal_leg3, -t256, t259,
-                gproximal_wz_leg1 * t260, gproximal_wz_leg2 * t262,
+                gproximal_wz_leg2 * rate_dot_proximal_leg2, rate_dot_proximal_leg3, -t241, t244,
+                gproximal_wz_leg1 * t245, gproximal_wz_leg2 * t247,
                 gproximal_wz_leg1 * rate_proximal_leg1, gproximal_wz_leg2 * rate_proximal_leg2,
                 rate_proximal_leg3, ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1),
                 ::overact::math::signed(gproximal_wz_leg2, rate_proximal_leg2),
                 ::overact::math::sign(rate_proximal_leg3), gproximal_wz_leg1, gproximal_wz_leg2,
-                1.0, gproximal_wz_leg1 * t287 + minus_c_proximal_leg1 * t289,
-                gproximal_wz_leg2 * t303 - minus_s_proximal_leg2 * t305, -t319,
-                gproximal_wz_leg1 * t333 + minus_c_proximal_leg1 * t337,
-                gproximal_wz_leg2 * t349 - minus_s_proximal_leg2 * t353, t365,
-                gproximal_wz_leg1 * t385 - minus_c_proximal_leg1 * t279,
-                gproximal_wz_leg2 * t402 + minus_s_proximal_leg2 * t295, t419,
-                minus_c_proximal_leg1 * t327 - gproximal_wz_leg1 * t430,
-                -(gproximal_wz_leg2 * t442 + minus_s_proximal_leg2 * t343), t452,
-                -(gproximal_wz_leg1 * t459 + minus_c_proximal_leg1 * t460),
-                gproximal_wz_leg2 * t467 + minus_s_proximal_leg2 * t469, 0.0,
+                1.0, gproximal_wz_leg1 * t269 + minus_c_proximal_leg1 * t272,
+                gproximal_wz_leg2 * t283 - minus_s_proximal_leg2 * t286, -t297,
+                gproximal_wz_leg1 * t308 + minus_c_proximal_leg1 * t312,
+                gproximal_wz_leg2 * t320 - minus_s_proximal_leg2 * t324, -t332,
+                gproximal_wz_leg1 * t352 - minus_c_proximal_leg1 * t266,
+                gproximal_wz_leg2 * t369 + minus_s_proximal_leg2 * t280, t386,
+                minus_c_proximal_leg1 * t399 - gproximal_wz_leg1 * t397,
+                -(gproximal_wz_leg2 * t411 + minus_s_proximal_leg2 * t405), t421,
+                -(minus_c_proximal_leg1 * t245 / minus_s_distal_leg1),
+                minus_s_proximal_leg2 * t247 / minus_s_distal_leg2, 0.0,
             ],
         ])
     }
@@ -3914,7 +3797,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 551 operations (205 additions, 337 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 458 intermediates.
+    /// 492 operations (185 additions, 301 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 399 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3931,245 +3814,230 @@ impl Spherical3Rrr {
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
         let t6 = 2.0 * pose[1];
-        let t7 = pose[3] * t6;
-        let t8 = pose[0] * t0;
-        let minus_s_distal_leg3 = t7 - t8;
-        let t11 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t11, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t11);
-        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t13 = 1.0 / c_distal_leg3;
-        let t15 = 1.0 / (t5 * c_distal_leg3);
-        let c_proximal_leg3 = t15 * (t5 * t5);
-        let t19 = 1.0 - pose[1] * t6;
-        let t20 = t19 - t1;
-        let t21 = pose[3] * t0;
-        let t22 = pose[0] * t6;
-        let minus_s_distal_leg2 = t21 - t22;
-        let t25 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t25, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t25);
-        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t28 = 1.0 / (t20 * c_distal_leg2);
-        let t29 = t7 + t8;
-        let s_proximal_leg2 = t28 * (t29 * t20);
-        let t32 = 1.0 / c_distal_leg2;
-        let t33 = minus_s_distal_leg2 * t32;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t33;
-        let t37 = minus_s_distal_leg3 * t13;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
-        let t40 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t40, 1.0, "actuators")?;
-        ::overact::guard::platform(t40, 1.0, "actuators")?;
-        let t41 = 1.0 / t40;
-        let t42 = pose[2] * t6;
-        let t43 = pose[0] * t3;
-        let minus_s_distal_leg1 = t42 - t43;
-        let t46 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t46, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t46);
+        let t7 = pose[2] * t6;
+        let t8 = pose[0] * t3;
+        let minus_s_distal_leg1 = t7 - t8;
+        let t11 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t11, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t11);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t48 = 1.0 / c_distal_leg1;
-        let t49 = minus_s_distal_leg1 * t48;
-        let t50 = t19 - t4;
-        let t52 = 1.0 / (t50 * c_distal_leg1);
-        let t53 = t21 + t22;
-        let s_proximal_leg1 = t52 * (t50 * t53);
-        let c_proximal_leg1 = t52 * (t50 * t50);
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t49;
-        let t61 = t42 + t43;
-        let s_proximal_leg3 = t15 * (t5 * t61);
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
-        let t69 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t13 = 1.0 / c_distal_leg1;
+        let t14 = minus_s_distal_leg1 * t13;
+        let t16 = 1.0 - pose[1] * t6;
+        let t17 = t16 - t4;
+        let c_proximal_leg1 = t13 * t17;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t14;
+        let t22 = pose[3] * t6;
+        let t23 = pose[0] * t0;
+        let minus_s_distal_leg3 = t22 - t23;
+        let t26 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t26, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t26);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t28 = 1.0 / c_distal_leg3;
+        let t29 = t7 + t8;
+        let s_proximal_leg3 = t28 * t29;
+        let t31 = minus_s_distal_leg3 * t28;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t31;
+        let c_proximal_leg3 = t5 * t28;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t31;
+        let t38 = t22 + t23;
+        let t39 = pose[3] * t0;
+        let t40 = pose[0] * t6;
+        let minus_s_distal_leg2 = t39 - t40;
+        let t43 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t43, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t43);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t45 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t38 * t45;
+        let t47 = minus_s_distal_leg2 * t45;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t47;
+        let t50 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t70 = t69 * t41;
-        let t72 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t69 * t70;
-        ::overact::guard::platform(t72, 1.0, "actuators")?;
-        ::overact::guard::platform(t72, 1.0, "actuators")?;
-        let t73 = 1.0 / t72;
-        let t74 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t76 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t78 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t80 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t81 = actuator_velocities[0] - t78 - t80;
-        let t83 = actuator_velocities[1] - t74 - t76 - t81 * t70;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t49;
-        let c_proximal_leg2 = t28 * (t20 * t20);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t33;
-        let t94 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t54 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
+        ::overact::guard::platform(t54, 1.0, "actuators")?;
+        ::overact::guard::platform(t54, 1.0, "actuators")?;
+        let t55 = 1.0 / t54;
+        let t56 = t50 * t55;
+        let t58 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t50 * t56;
+        ::overact::guard::platform(t58, 1.0, "actuators")?;
+        ::overact::guard::platform(t58, 1.0, "actuators")?;
+        let t59 = 1.0 / t58;
+        let t60 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t62 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t64 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t66 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t67 = actuator_velocities[0] - t64 - t66;
+        let t69 = actuator_velocities[1] - t60 - t62 - t67 * t56;
+        let t71 = t39 + t40;
+        let s_proximal_leg1 = t13 * t71;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t14;
+        let t75 = t16 - t1;
+        let c_proximal_leg2 = t75 * t45;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t47;
+        let t82 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t95 = t94 * t41;
-        let t97 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t69 * t95;
-        let t98 = t97 * t73;
-        let t106 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t94 * t95
-            - t97 * t98;
-        ::overact::guard::platform(t106, 1.0, "actuators")?;
-        ::overact::guard::platform(t106, 1.0, "actuators")?;
-        let t107 = 1.0 / t106;
-        let t108 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t109 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t116 = t107
-            * (actuator_velocities[2] - (t108 + t109) - t81 * t95 - t98 * t83);
-        let t118 = t73 * t83 - t98 * t116;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t118 - c_proximal_leg1 * t116;
-        let t124 = c_proximal_leg1 * t118 + s_proximal_leg1 * t116;
-        let t128 = minus_rate_distal_leg1 * (t49 * t124)
-            - actuator_velocities[0] * minus_rate_distal_leg1;
-        let minus_rate_dot_proximal_leg1 = t49 * t128 + t124 * minus_rate_distal_leg1;
-        let t132 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t138 = t81 * t41 - t70 * t118 - t95 * t116;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t116 - c_proximal_leg2 * t138;
-        let t143 = s_proximal_leg2 * t138 + c_proximal_leg2 * t116;
-        let t147 = minus_rate_distal_leg2 * (t33 * t143)
-            - actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t33 * t147 + t143 * minus_rate_distal_leg2;
-        let t151 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_distal_leg3 = c_proximal_leg3 * t118 - s_proximal_leg3 * t138;
-        let t160 = c_proximal_leg3 * t138 + s_proximal_leg3 * t118;
-        let t163 = actuator_velocities[2] * rate_distal_leg3
-            - rate_distal_leg3 * (t37 * t160);
-        let minus_rate_dot_proximal_leg3 = t37 * t163 - t160 * rate_distal_leg3;
-        let t167 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t169 = t132 - minus_gproximal_wx_leg2 * t151
-            - minus_gproximal_wx_leg3 * t167;
-        let t176 = t151 - minus_gproximal_wy_leg1 * t132 - minus_gproximal_wy_leg3 * t167
-            - t70 * t169;
-        let t186 = t107
-            * (t167 - (minus_gproximal_wz_leg1 * t132 + minus_gproximal_wz_leg2 * t151)
-                - t95 * t169 - t98 * t176);
-        let t188 = t73 * t176 - t98 * t186;
-        let t192 = t41 * t169 - t70 * t188 - t95 * t186;
-        let rate_dot_wrist_leg3 = t13
-            * (c_proximal_leg3 * t192 + s_proximal_leg3 * t188 + t163);
-        let t198 = c_distal_leg3 * actuator_velocities[2];
-        let t199 = rate_distal_leg3 * t198;
-        let t200 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t201 = t199 - t200;
-        let t202 = rate_dot_wrist_leg3 - t201;
-        let t204 = minus_s_distal_leg2 * actuator_velocities[1];
-        let rate_wrist_leg2 = t32 * t143;
-        let t206 = t204 + rate_wrist_leg2;
-        let t207 = minus_s_distal_leg3 * actuator_velocities[2];
-        let rate_wrist_leg3 = t13 * t160;
-        let t209 = t207 + rate_wrist_leg3;
-        let t210 = t206 * t209;
-        let t211 = minus_s_distal_leg1 * t210;
-        let t213 = minus_s_distal_leg1 * actuator_velocities[0];
-        let rate_wrist_leg1 = t48 * t124;
-        let t215 = t213 + rate_wrist_leg1;
-        let t216 = t215 * t209;
-        let t217 = t29 * t216;
-        let t220 = t50 * t210;
-        let t222 = minus_s_distal_leg2 * t216;
-        let t225 = t53 * t210;
-        let t227 = t20 * t216;
-        let t229 = t215 * t206;
-        let t230 = t229 + t202;
-        let t232 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t233 = c_distal_leg1 * actuator_velocities[0];
-        let t234 = minus_rate_distal_leg1 * t233;
-        let t235 = t232 + t234;
-        let rate_dot_wrist_leg1 = t48
-            * (c_proximal_leg1 * t188 + s_proximal_leg1 * t186 + t128);
-        let t241 = t235 + rate_dot_wrist_leg1;
-        let t242 = t210 - t241;
-        let t245 = t209 * t209;
-        let t246 = t215 * t215;
-        let t247 = t245 - t246;
-        let t260 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t261 = c_distal_leg2 * actuator_velocities[1];
-        let t262 = minus_rate_distal_leg2 * t261;
-        let t263 = t260 + t262;
-        let rate_dot_wrist_leg2 = t32
-            * (s_proximal_leg2 * t192 + c_proximal_leg2 * t186 + t147);
-        let t269 = t263 + rate_dot_wrist_leg2;
-        let t270 = t216 + t269;
-        let t272 = t206 * t206;
-        let t273 = t272 - t245;
-        let t276 = t229 - t202;
-        let t290 = t5 * t229;
-        let t294 = t61 * t229;
-        let t298 = minus_s_distal_leg3 * t229;
-        let t301 = t246 - t272;
-        let t303 = t216 - t269;
-        let t306 = t210 + t241;
-        let t328 = 9.81 * t53;
-        let t330 = 9.81 * t20;
-        let t337 = 9.81 * minus_s_distal_leg3;
-        let t355 = 9.81 * c_proximal_leg1;
-        let t357 = minus_gproximal_wz_leg1 * t355;
-        let t358 = 9.81 * s_proximal_leg2;
-        let t360 = minus_gproximal_wz_leg2 * t358;
-        let t361 = 9.81 * s_proximal_leg1;
-        let t363 = 9.81 * c_proximal_leg2;
-        let t374 = minus_rate_distal_leg1 * t213;
-        let t375 = c_distal_leg1 * actuator_accelerations[0];
-        let t376 = t374 - t375;
-        let t379 = c_distal_leg1 * t376 + minus_s_distal_leg1 * t234;
-        let t381 = t233 * t213;
-        let t387 = minus_rate_distal_leg2 * t204;
-        let t388 = c_distal_leg2 * actuator_accelerations[1];
-        let t389 = t387 - t388;
-        let t392 = c_distal_leg2 * t389 + minus_s_distal_leg2 * t262;
-        let t394 = t261 * t204;
-        let t400 = t198 * t207;
-        let t402 = c_distal_leg3 * actuator_accelerations[2];
-        let t403 = rate_distal_leg3 * t207;
-        let t404 = t402 + t403;
-        let t407 = c_distal_leg3 * t404 + minus_s_distal_leg3 * t199;
-        let t417 = c_distal_leg1 * (t234 + t235) - minus_s_distal_leg1 * (t374 + t376);
-        let t419 = t233 * t233;
-        let t420 = t213 * t213;
-        let t421 = t419 - t420;
-        let t427 = t261 * t261;
-        let t428 = t204 * t204;
-        let t429 = t427 - t428;
-        let t435 = c_distal_leg2 * (t262 + t263) - minus_s_distal_leg2 * (t387 + t389);
-        let t445 = minus_s_distal_leg3 * (t403 + t404) - c_distal_leg3 * (t199 + t201);
-        let t447 = t198 * t198;
-        let t448 = t207 * t207;
-        let t449 = t447 - t448;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t124;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t188
-            - c_proximal_leg1 * t186 + minus_rate_dot_distal_leg1;
-        let t462 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t465 = c_distal_leg1 * (t381 - minus_rate_dot_distal_leg1_2)
-            + minus_s_distal_leg1 * (t462 - t419);
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t143;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t186
-            - c_proximal_leg2 * t192 + minus_rate_dot_distal_leg2;
-        let t479 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t482 = c_distal_leg2 * (t394 - minus_rate_dot_distal_leg2_2)
-            + minus_s_distal_leg2 * (t479 - t427);
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t160;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t188 - s_proximal_leg3 * t192
+        let t83 = t82 * t55;
+        let t85 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t50 * t83;
+        let t86 = t85 * t59;
+        let t94 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t82 * t83
+            - t85 * t86;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        let t95 = 1.0 / t94;
+        let t96 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t97 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t104 = t95 * (actuator_velocities[2] - (t96 + t97) - t67 * t83 - t86 * t69);
+        let t106 = t59 * t69 - t86 * t104;
+        let t109 = c_proximal_leg1 * t106 + s_proximal_leg1 * t104;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t106 - c_proximal_leg1 * t104;
+        let t113 = t109 * minus_rate_distal_leg1;
+        let t115 = actuator_velocities[0] * minus_rate_distal_leg1;
+        let t116 = t14 * t113 - t115;
+        let minus_rate_dot_proximal_leg1 = t14 * t116 + t113;
+        let t119 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_wrist_leg1 = t13 * t109;
+        let t122 = actuator_velocities[0] + minus_s_distal_leg1 * rate_wrist_leg1;
+        let t125 = t38 * t122 + t75 * t104;
+        let t126 = t45 * t125;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t104 - c_proximal_leg2 * t122;
+        let t130 = t126 * minus_rate_distal_leg2;
+        let t132 = actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t47 * (t47 * t130 - t132) + t130;
+        let t136 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let rate_distal_leg3 = c_proximal_leg3 * t106 - s_proximal_leg3 * t122;
+        let t142 = actuator_velocities[2] * rate_distal_leg3;
+        let t145 = t5 * t122 + t29 * t106;
+        let t146 = t28 * t145;
+        let t147 = t146 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t31 * (t142 - t31 * t147) - t147;
+        let t152 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t158 = t119 - minus_gproximal_wx_leg2 * t136
+            - minus_gproximal_wx_leg3 * t152;
+        let t160 = t136 - minus_gproximal_wy_leg1 * t119 - minus_gproximal_wy_leg3 * t152
+            - t56 * t158;
+        let t170 = t95
+            * (t152 - (minus_gproximal_wz_leg1 * t119 + minus_gproximal_wz_leg2 * t136)
+                - t83 * t158 - t86 * t160);
+        let t172 = t59 * t160 - t86 * t170;
+        let t175 = c_proximal_leg1 * t172 + s_proximal_leg1 * t170;
+        let t177 = t119 + t14 * t175;
+        let t182 = t5 * t177 + t29 * t172 + minus_s_distal_leg3 * t170;
+        let t185 = t145 + minus_s_distal_leg3 * t104;
+        let t187 = minus_s_distal_leg2 * t106 + t125;
+        let t188 = t185 * t187;
+        let t189 = minus_s_distal_leg1 * t188;
+        let t191 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t192 = t191 + rate_wrist_leg1;
+        let t193 = t192 * t185;
+        let t194 = t38 * t193;
+        let t197 = t17 * t188;
+        let t199 = minus_s_distal_leg2 * t193;
+        let t202 = t71 * t188;
+        let t204 = t75 * t193;
+        let t206 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t207 = c_distal_leg1 * actuator_velocities[0];
+        let rate_dot_wrist_leg1 = t13 * (t175 + t116);
+        let t212 = t206 + minus_rate_distal_leg1 * t207 + rate_dot_wrist_leg1;
+        let t213 = t212 - t188;
+        let t215 = t192 * t187;
+        let t216 = t182 + t215;
+        let t219 = t185 * t185;
+        let t220 = t192 * t192;
+        let t221 = t219 - t220;
+        let t238 = t38 * t177 + minus_s_distal_leg2 * t172 + t75 * t170;
+        let t239 = t238 + t193;
+        let t241 = t187 * t187;
+        let t242 = t241 - t219;
+        let t245 = t182 - t215;
+        let t259 = t5 * t215;
+        let t263 = t29 * t215;
+        let t267 = minus_s_distal_leg3 * t215;
+        let t270 = t220 - t241;
+        let t272 = t238 - t193;
+        let t275 = t212 + t188;
+        let t297 = 9.81 * t29;
+        let t298 = 9.81 * t5;
+        let t309 = 9.81 * c_proximal_leg1;
+        let t311 = minus_gproximal_wz_leg1 * t309;
+        let t312 = 9.81 * s_proximal_leg2;
+        let t314 = minus_gproximal_wz_leg2 * t312;
+        let t315 = 9.81 * s_proximal_leg1;
+        let t317 = 9.81 * c_proximal_leg2;
+        let t328 = minus_rate_distal_leg1 * t191;
+        let t329 = c_distal_leg1 * actuator_accelerations[0];
+        let t331 = t328 + t328 - t329;
+        let t332 = c_distal_leg1 * t331;
+        let t334 = t207 * t191;
+        let t340 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t341 = minus_rate_distal_leg2 * t340;
+        let t342 = c_distal_leg2 * actuator_accelerations[1];
+        let t344 = t341 + t341 - t342;
+        let t345 = c_distal_leg2 * t344;
+        let t347 = c_distal_leg2 * actuator_velocities[1];
+        let t348 = t347 * t340;
+        let t354 = c_distal_leg3 * actuator_velocities[2];
+        let t355 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t356 = t354 * t355;
+        let t358 = rate_distal_leg3 * t355;
+        let t359 = c_distal_leg3 * actuator_accelerations[2];
+        let t361 = t358 + t359 + t358;
+        let t362 = c_distal_leg3 * t361;
+        let t370 = 2.0 * (t115 - minus_s_distal_leg1 * t331);
+        let t372 = t207 * t207;
+        let t373 = t191 * t191;
+        let t374 = t372 - t373;
+        let t380 = t347 * t347;
+        let t381 = t340 * t340;
+        let t382 = t380 - t381;
+        let t386 = 2.0 * (t132 - minus_s_distal_leg2 * t344);
+        let t394 = 2.0 * (t142 - minus_s_distal_leg3 * t361);
+        let t396 = t354 * t354;
+        let t397 = t355 * t355;
+        let t398 = t396 - t397;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t109;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t172
+            - c_proximal_leg1 * t170 + minus_rate_dot_distal_leg1;
+        let t411 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t414 = c_distal_leg1 * (t334 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t411 - t372);
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t126;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t170
+            - c_proximal_leg2 * t177 + minus_rate_dot_distal_leg2;
+        let t428 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t431 = c_distal_leg2 * (t348 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t428 - t380);
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t146;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t172 - s_proximal_leg3 * t177
             - minus_rate_dot_distal_leg3;
-        let t496 = rate_distal_leg3 * rate_distal_leg3;
-        let t499 = c_distal_leg3 * (t400 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t496 - t447);
-        let t510 = minus_s_distal_leg1 * (t381 + minus_rate_dot_distal_leg1_2)
-            - c_distal_leg1 * (t420 - t462);
-        let t521 = minus_s_distal_leg2 * (t394 + minus_rate_dot_distal_leg2_2)
-            - c_distal_leg2 * (t428 - t479);
-        let t533 = minus_s_distal_leg3 * (t400 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t448 - t496);
-        let t540 = 9.81 * (minus_s_distal_leg1 * c_proximal_leg1);
-        let t550 = 9.81 * (minus_s_distal_leg2 * s_proximal_leg2);
+        let t445 = rate_distal_leg3 * rate_distal_leg3;
+        let t448 = c_distal_leg3 * (t356 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t445 - t396);
+        let t459 = minus_s_distal_leg1 * (t334 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t373 - t411);
+        let t470 = minus_s_distal_leg2 * (t348 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t381 - t428);
+        let t472 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t478 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t484 = minus_s_distal_leg3 * (t356 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t397 - t445);
+        let t490 = minus_s_distal_leg1 * t309;
+        let t496 = minus_s_distal_leg2 * t312;
         Ok([
             [
-                t5 * t202 + t211 - t217, minus_s_distal_leg1 * t230 - t5 * t242 + t29 * t247,
-                t5 * t270 + minus_s_distal_leg1 * t273 - t29 * t276,
-                minus_s_distal_leg1 * t241 - t290 + t217,
-                t5 * t301 - minus_s_distal_leg1 * t303 + t29 * t306, t290 - t211 + t29 * t269,
-                t29 * t328 - minus_s_distal_leg1 * t330, t5 * t330 - t29 * t337,
-                minus_s_distal_leg1 * t337 - t5 * t328, actuator_accelerations[0],
+                t5 * t182 + t189 - t194, t5 * t213 + minus_s_distal_leg1 * t216 + t38 * t221,
+                t5 * t239 + minus_s_distal_leg1 * t242 + t38 * t245,
+                minus_s_distal_leg1 * t212 - t259 + t194,
+                t5 * t270 + minus_s_distal_leg1 * t272 + t38 * t275, t259 - t189 + t38 * t238, t297,
+                9.81 * t17, 9.81 * minus_s_distal_leg2, actuator_accelerations[0],
                 -(minus_gproximal_wx_leg2 * actuator_accelerations[1]),
-                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t355,
-                -(minus_gproximal_wx_leg2 * t358), t361, -t360, actuator_velocities[0], -t78, -t80,
+                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t309,
+                -(minus_gproximal_wx_leg2 * t312), t315, -t314, actuator_velocities[0], -t64, -t66,
                 ::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
@@ -4182,32 +4050,31 @@ impl Spherical3Rrr {
                 1.0,
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
-                -t379,
-                minus_gproximal_wx_leg2 * t392 - c_proximal_leg2 * t394,
-                s_proximal_leg3 * t400 - minus_gproximal_wx_leg3 * t407,
-                t417,
-                c_proximal_leg2 * t429 - minus_gproximal_wx_leg2 * t435,
-                -(minus_gproximal_wx_leg3 * t445 + s_proximal_leg3 * t449),
-                -t465,
-                minus_gproximal_wx_leg2 * t482 - c_proximal_leg2 * t388,
-                minus_gproximal_wx_leg3 * t499 + s_proximal_leg3 * t402,
-                t510,
-                -(minus_gproximal_wx_leg2 * t521 + c_proximal_leg2 * t260),
-                s_proximal_leg3 * t200 - minus_gproximal_wx_leg3 * t533,
-                t540,
-                minus_gproximal_wx_leg2 * t550 - 9.81 * (t20 * c_proximal_leg2),
-                9.81 * (minus_s_distal_leg3 * s_proximal_leg3),
+                -t332,
+                minus_gproximal_wx_leg2 * t345 - c_proximal_leg2 * t348,
+                s_proximal_leg3 * t356 - minus_gproximal_wx_leg3 * t362,
+                t370,
+                c_proximal_leg2 * t382 - minus_gproximal_wx_leg2 * t386,
+                -(s_proximal_leg3 * t398 - minus_gproximal_wx_leg3 * t394),
+                -t414,
+                minus_gproximal_wx_leg2 * t431 - c_proximal_leg2 * t342,
+                minus_gproximal_wx_leg3 * t448 + s_proximal_leg3 * t359,
+                t459,
+                -(minus_gproximal_wx_leg2 * t470 + c_proximal_leg2 * t472),
+                s_proximal_leg3 * t478 - minus_gproximal_wx_leg3 * t484,
+                t490,
+                minus_gproximal_wx_leg2 * t496 - t75 * t317,
+                t31 * t297,
             ],
             [
-                t61 * t202 + t220 - t222, t50 * t230 - t61 * t242 + minus_s_distal_leg2 * t247,
-                t61 * t270 + t50 * t273 - minus_s_distal_leg2 * t276, t50 * t241 - t294 + t222,
-                t61 * t301 - t50 * t303 + minus_s_distal_leg2 * t306,
-                t294 - t220 + minus_s_distal_leg2 * t269, minus_s_distal_leg2 * t328 - t50 * t330,
-                t61 * t330 - minus_s_distal_leg2 * t337, t50 * t337 - t61 * t328,
-                -(minus_gproximal_wy_leg1 * actuator_accelerations[0]), actuator_accelerations[1],
-                -(minus_gproximal_wy_leg3 * actuator_accelerations[2]),
-                minus_gproximal_wy_leg1 * t355, t358, -t357, t363, -t74, actuator_velocities[1],
-                -t76,
+                t29 * t182 + t197 - t199, t29 * t213 + t17 * t216 + minus_s_distal_leg2 * t221,
+                t29 * t239 + t17 * t242 + minus_s_distal_leg2 * t245, t17 * t212 - t263 + t199,
+                t29 * t270 + t17 * t272 + minus_s_distal_leg2 * t275,
+                t263 - t197 + minus_s_distal_leg2 * t238, -t298, -(9.81 * minus_s_distal_leg1),
+                -(9.81 * t38), -(minus_gproximal_wy_leg1 * actuator_accelerations[0]),
+                actuator_accelerations[1], -(minus_gproximal_wy_leg3 * actuator_accelerations[2]),
+                minus_gproximal_wy_leg1 * t309, t312, -t311, t317, -t60, actuator_velocities[1],
+                -t62,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
@@ -4220,31 +4087,31 @@ impl Spherical3Rrr {
                 -minus_gproximal_wy_leg1,
                 1.0,
                 -minus_gproximal_wy_leg3,
-                minus_gproximal_wy_leg1 * t379 + s_proximal_leg1 * t381,
-                -t392,
-                -(minus_gproximal_wy_leg3 * t407 + c_proximal_leg3 * t400),
-                -(minus_gproximal_wy_leg1 * t417 + s_proximal_leg1 * t421),
-                t435,
-                c_proximal_leg3 * t449 - minus_gproximal_wy_leg3 * t445,
-                minus_gproximal_wy_leg1 * t465 + s_proximal_leg1 * t375,
-                -t482,
-                minus_gproximal_wy_leg3 * t499 - c_proximal_leg3 * t402,
-                s_proximal_leg1 * t232 - minus_gproximal_wy_leg1 * t510,
-                t521,
-                -(minus_gproximal_wy_leg3 * t533 + c_proximal_leg3 * t200),
-                9.81 * (t53 * s_proximal_leg1) - minus_gproximal_wy_leg1 * t540,
-                -t550,
-                -(9.81 * (minus_s_distal_leg3 * c_proximal_leg3)),
+                minus_gproximal_wy_leg1 * t332 + s_proximal_leg1 * t334,
+                -t345,
+                -(minus_gproximal_wy_leg3 * t362 + c_proximal_leg3 * t356),
+                -(minus_gproximal_wy_leg1 * t370 + s_proximal_leg1 * t374),
+                t386,
+                c_proximal_leg3 * t398 + minus_gproximal_wy_leg3 * t394,
+                minus_gproximal_wy_leg1 * t414 + s_proximal_leg1 * t329,
+                -t431,
+                minus_gproximal_wy_leg3 * t448 - c_proximal_leg3 * t359,
+                s_proximal_leg1 * t206 - minus_gproximal_wy_leg1 * t459,
+                t470,
+                -(minus_gproximal_wy_leg3 * t484 + c_proximal_leg3 * t478),
+                t71 * t315 - minus_gproximal_wy_leg1 * t490,
+                -t496,
+                -(t31 * t298),
             ],
             [
-                minus_s_distal_leg3 * t202 + t225 - t227,
-                t53 * t230 - minus_s_distal_leg3 * t242 + t20 * t247,
-                minus_s_distal_leg3 * t270 + t53 * t273 - t20 * t276, t53 * t241 - t298 + t227,
-                minus_s_distal_leg3 * t301 - t53 * t303 + t20 * t306, t298 - t225 + t20 * t269, 0.0,
+                minus_s_distal_leg3 * t182 + t202 - t204,
+                minus_s_distal_leg3 * t213 + t71 * t216 + t75 * t221,
+                minus_s_distal_leg3 * t239 + t71 * t242 + t75 * t245, t71 * t212 - t267 + t204,
+                minus_s_distal_leg3 * t270 + t71 * t272 + t75 * t275, t267 - t202 + t75 * t238, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * actuator_accelerations[0]),
                 -(minus_gproximal_wz_leg2 * actuator_accelerations[1]), actuator_accelerations[2],
-                t357, -t360, -(minus_gproximal_wz_leg1 * t361), -(minus_gproximal_wz_leg2 * t363),
-                -t108, -t109, actuator_velocities[2],
+                t311, -t314, -(minus_gproximal_wz_leg1 * t315), -(minus_gproximal_wz_leg2 * t317),
+                -t96, -t97, actuator_velocities[2],
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
@@ -4257,20 +4124,20 @@ impl Spherical3Rrr {
                 -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2,
                 1.0,
-                minus_gproximal_wz_leg1 * t379 - c_proximal_leg1 * t381,
-                minus_gproximal_wz_leg2 * t392 + s_proximal_leg2 * t394,
-                t407,
-                c_proximal_leg1 * t421 - minus_gproximal_wz_leg1 * t417,
-                -(minus_gproximal_wz_leg2 * t435 + s_proximal_leg2 * t429),
-                t445,
-                minus_gproximal_wz_leg1 * t465 - c_proximal_leg1 * t375,
-                minus_gproximal_wz_leg2 * t482 + s_proximal_leg2 * t388,
-                -t499,
-                -(minus_gproximal_wz_leg1 * t510 + c_proximal_leg1 * t232),
-                s_proximal_leg2 * t260 - minus_gproximal_wz_leg2 * t521,
-                t533,
-                -(minus_gproximal_wz_leg1 * t540 + 9.81 * (t50 * s_proximal_leg1)),
-                minus_gproximal_wz_leg2 * t550 + 9.81 * (t29 * c_proximal_leg2),
+                minus_gproximal_wz_leg1 * t332 - c_proximal_leg1 * t334,
+                minus_gproximal_wz_leg2 * t345 + s_proximal_leg2 * t348,
+                t362,
+                c_proximal_leg1 * t374 - minus_gproximal_wz_leg1 * t370,
+                -(minus_gproximal_wz_leg2 * t386 + s_proximal_leg2 * t382),
+                -t394,
+                minus_gproximal_wz_leg1 * t414 - c_proximal_leg1 * t329,
+                minus_gproximal_wz_leg2 * t431 + s_proximal_leg2 * t342,
+                -t448,
+                -(minus_gproximal_wz_leg1 * t459 + c_proximal_leg1 * t206),
+                s_proximal_leg2 * t472 - minus_gproximal_wz_leg2 * t470,
+                t484,
+                -(t309 * (t13 * s_proximal_leg1)),
+                t317 * (s_proximal_leg2 * t45),
                 0.0,
             ],
         ])
@@ -4285,7 +4152,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 596 operations (219 additions, 370 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 517 intermediates.
+    /// 572 operations (212 additions, 356 multiplications, 4 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 493 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4306,290 +4173,279 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let t16 = 1.0 / c_distal_leg2;
-        let t17 = minus_s_distal_leg2 * t16;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t17;
-        let t20 = 2.0 * pose[3];
-        let t21 = pose[3] * t20;
-        let t22 = 1.0 - t4 - t21;
-        let t23 = pose[3] * t0;
-        let t24 = pose[0] * t3;
-        let minus_s_distal_leg3 = t23 - t24;
-        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t27, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t27);
+        let t12 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t5 * t12;
+        let t14 = minus_s_distal_leg2 * t12;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t14;
+        let t16 = pose[2] * t0;
+        let t17 = 2.0 * pose[3];
+        let t18 = pose[0] * t17;
+        let t19 = t16 + t18;
+        let t20 = pose[3] * t0;
+        let t21 = pose[0] * t3;
+        let minus_s_distal_leg3 = t20 - t21;
+        let t24 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t24, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t30 = 1.0 / (t22 * c_distal_leg3);
-        let t31 = pose[2] * t0;
-        let t32 = pose[0] * t20;
-        let t33 = t31 + t32;
-        let s_proximal_leg3 = t30 * (t22 * t33);
-        let t36 = 1.0 / c_distal_leg3;
-        let t37 = minus_s_distal_leg3 * t36;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
-        let t40 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let t41 = t2 - t21;
-        let minus_s_distal_leg1 = t31 - t32;
-        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t44, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t44);
+        let t26 = 1.0 / c_distal_leg3;
+        let s_proximal_leg3 = t19 * t26;
+        let t28 = minus_s_distal_leg3 * t26;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t28;
+        let t31 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t32 = pose[3] * t17;
+        let t33 = t2 - t32;
+        let minus_s_distal_leg1 = t16 - t18;
+        let t36 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t36, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t36);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t47 = 1.0 / (t41 * c_distal_leg1);
-        let c_proximal_leg1 = t47 * (t41 * t41);
-        let t50 = 1.0 / c_distal_leg1;
-        let t51 = minus_s_distal_leg1 * t50;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t51;
-        let t53 = t23 + t24;
-        let s_proximal_leg2 = t13 * (t53 * t5);
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t17;
-        let c_proximal_leg3 = t30 * (t22 * t22);
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
-        let t61 = minus_gproximal_wx_leg2
+        let t38 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t33 * t38;
+        let t40 = minus_s_distal_leg1 * t38;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t40;
+        let t42 = t20 + t21;
+        let s_proximal_leg2 = t12 * t42;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t14;
+        let t46 = 1.0 - t4 - t32;
+        let c_proximal_leg3 = t46 * t26;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t28;
+        let t50 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let t64 = t6 + t7;
-        let s_proximal_leg1 = t47 * (t41 * t64);
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t51;
-        let t69 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+        let t53 = t6 + t7;
+        let s_proximal_leg1 = t38 * t53;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t40;
+        let t57 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let t71 = t40 - minus_gproximal_wy_leg1 * t61 - minus_gproximal_wz_leg1 * t69;
-        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
-        let t72 = 1.0 / t71;
-        let t73 = t40 * t72;
-        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t82 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
-        let t83 = t37 * t82;
-        let rate_proximal_leg3 = twist[2] - t83;
-        let t88 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t83;
-        let rate_dot_wrist_leg3 = t36 * t88;
-        let t90 = c_distal_leg3 * rate_proximal_leg3;
-        let t91 = rate_distal_leg3 * t90;
-        let rate_dot_proximal_leg3 = acceleration[2] + t82 * rate_distal_leg3
-            - t37 * t88;
-        let t96 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t97 = t91 - t96;
-        let t98 = rate_dot_wrist_leg3 - t97;
-        let t102 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
-        let t103 = t17 * t102;
-        let rate_proximal_leg2 = twist[1] - t103;
-        let t105 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let rate_wrist_leg2 = t16 * t102;
-        let t107 = t105 + rate_wrist_leg2;
-        let t108 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let rate_wrist_leg3 = t36 * t82;
-        let t110 = t108 + rate_wrist_leg3;
-        let t111 = t107 * t110;
-        let t112 = minus_s_distal_leg1 * t111;
-        let t116 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
-        let t117 = t51 * t116;
-        let rate_proximal_leg1 = twist[0] - t117;
-        let t119 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let rate_wrist_leg1 = t50 * t116;
-        let t121 = t119 + rate_wrist_leg1;
-        let t122 = t121 * t110;
-        let t123 = t53 * t122;
-        let t124 = t22 * t98 + t112 - t123;
-        let t126 = t61 * t72;
-        let t128 = t41 * t111;
-        let t130 = minus_s_distal_leg2 * t122;
-        let t131 = t33 * t98 + t128 - t130;
-        let t134 = t69 * t72;
-        let t136 = t64 * t111;
-        let t138 = t5 * t122;
-        let t139 = minus_s_distal_leg3 * t98 + t136 - t138;
-        let t144 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t72;
-        let t148 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t72;
-        let t153 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t72;
-        let t158 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t72;
-        let t162 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t72;
-        let t167 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t72;
-        let t170 = t121 * t107;
-        let t171 = t170 + t98;
+        let t59 = t31 - minus_gproximal_wy_leg1 * t50 - minus_gproximal_wz_leg1 * t57;
+        ::overact::guard::platform(t59, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t59, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t59, 1.0, "kept actuators")?;
+        let t60 = 1.0 / t59;
+        let t61 = t31 * t60;
+        let t64 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1];
+        let t67 = c_distal_leg3 * t64 + minus_s_distal_leg3 * acceleration[2];
+        let t71 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t74 = c_distal_leg3 * t71 + minus_s_distal_leg3 * twist[2];
+        let t79 = t42 * twist[0] + minus_s_distal_leg2 * twist[1] + t5 * twist[2];
+        let t80 = t74 * t79;
+        let t81 = minus_s_distal_leg1 * t80;
+        let t85 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t86 = t40 * t85;
+        let rate_proximal_leg1 = twist[0] - t86;
+        let t88 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let rate_wrist_leg1 = t38 * t85;
+        let t90 = t88 + rate_wrist_leg1;
+        let t91 = t90 * t74;
+        let t92 = t42 * t91;
+        let t93 = t46 * t67 + t81 - t92;
+        let t95 = t50 * t60;
+        let t97 = t33 * t80;
+        let t99 = minus_s_distal_leg2 * t91;
+        let t100 = t19 * t67 + t97 - t99;
+        let t103 = t57 * t60;
+        let t105 = t53 * t80;
+        let t107 = t5 * t91;
+        let t108 = minus_s_distal_leg3 * t67 + t105 - t107;
+        let t113 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t60;
+        let t117 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t60;
+        let t122 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t60;
+        let t127 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t60;
+        let t131 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t60;
+        let t136 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t60;
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t184 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t117
-            - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_proximal_leg1 = acceleration[0] - t116 * minus_rate_distal_leg1
-            - t51 * t184;
-        let t187 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t188 = c_distal_leg1 * rate_proximal_leg1;
-        let t189 = minus_rate_distal_leg1 * t188;
-        let t190 = t187 + t189;
-        let rate_dot_wrist_leg1 = t50 * t184;
-        let t192 = t190 + rate_dot_wrist_leg1;
-        let t193 = t111 - t192;
-        let t196 = t110 * t110;
-        let t197 = t121 * t121;
-        let t198 = t196 - t197;
-        let t200 = minus_s_distal_leg1 * t171 - t22 * t193 + t53 * t198;
-        let t206 = t41 * t171 - t33 * t193 + minus_s_distal_leg2 * t198;
-        let t213 = t64 * t171 - minus_s_distal_leg3 * t193 + t5 * t198;
+        let t150 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t86 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t85 * minus_rate_distal_leg1
+            - t40 * t150;
+        let t153 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t154 = c_distal_leg1 * rate_proximal_leg1;
+        let t155 = minus_rate_distal_leg1 * t154;
+        let t156 = t153 + t155;
+        let rate_dot_wrist_leg1 = t38 * t150;
+        let t158 = t156 + rate_dot_wrist_leg1;
+        let t159 = t158 - t80;
+        let t161 = t90 * t79;
+        let t162 = t67 + t161;
+        let t165 = t74 * t74;
+        let t166 = t90 * t90;
+        let t167 = t165 - t166;
+        let t169 = t46 * t159 + minus_s_distal_leg1 * t162 + t42 * t167;
+        let t175 = t19 * t159 + t33 * t162 + minus_s_distal_leg2 * t167;
+        let t182 = minus_s_distal_leg3 * t159 + t53 * t162 + t5 * t167;
+        let t199 = t42 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t5 * acceleration[2];
+        let t200 = t199 + t91;
+        let t202 = t79 * t79;
+        let t203 = t202 - t165;
+        let t206 = t67 - t161;
+        let t208 = t46 * t200 + minus_s_distal_leg1 * t203 + t42 * t206;
+        let t214 = t19 * t200 + t33 * t203 + minus_s_distal_leg2 * t206;
+        let t221 = minus_s_distal_leg3 * t200 + t53 * t203 + t5 * t206;
+        let t235 = t46 * t161;
+        let t237 = minus_s_distal_leg1 * t158 - t235 + t92;
+        let t240 = t19 * t161;
+        let t242 = t33 * t158 - t240 + t99;
+        let t246 = minus_s_distal_leg3 * t161;
+        let t248 = t53 * t158 - t246 + t107;
+        let t261 = t166 - t202;
+        let t263 = t199 - t91;
+        let t266 = t158 + t80;
+        let t268 = t46 * t261 + minus_s_distal_leg1 * t263 + t42 * t266;
+        let t274 = t19 * t261 + t33 * t263 + minus_s_distal_leg2 * t266;
+        let t281 = minus_s_distal_leg3 * t261 + t53 * t263 + t5 * t266;
+        let t296 = t235 - t81 + t42 * t199;
+        let t300 = t240 - t97 + minus_s_distal_leg2 * t199;
+        let t305 = t246 - t105 + t5 * t199;
+        let t318 = 9.81 * t19;
+        let t320 = 9.81 * t46;
+        let t329 = 9.81 * t33;
+        let t331 = 9.81 * minus_s_distal_leg1;
+        let t340 = 9.81 * minus_s_distal_leg2;
+        let t342 = 9.81 * t42;
+        let t353 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t237 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t103
-            - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t102 * minus_rate_distal_leg2
-            - t17 * t237;
-        let t240 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t241 = c_distal_leg2 * rate_proximal_leg2;
-        let t242 = minus_rate_distal_leg2 * t241;
-        let t243 = t240 + t242;
-        let rate_dot_wrist_leg2 = t16 * t237;
-        let t245 = t243 + rate_dot_wrist_leg2;
-        let t246 = t122 + t245;
-        let t248 = t107 * t107;
-        let t249 = t248 - t196;
-        let t252 = t170 - t98;
-        let t254 = t22 * t246 + minus_s_distal_leg1 * t249 - t53 * t252;
-        let t260 = t33 * t246 + t41 * t249 - minus_s_distal_leg2 * t252;
-        let t267 = minus_s_distal_leg3 * t246 + t64 * t249 - t5 * t252;
-        let t281 = t22 * t170;
-        let t283 = minus_s_distal_leg1 * t192 - t281 + t123;
-        let t286 = t33 * t170;
-        let t288 = t41 * t192 - t286 + t130;
-        let t292 = minus_s_distal_leg3 * t170;
-        let t294 = t64 * t192 - t292 + t138;
-        let t307 = t197 - t248;
-        let t309 = t122 - t245;
-        let t312 = t111 + t192;
-        let t314 = t22 * t307 - minus_s_distal_leg1 * t309 + t53 * t312;
-        let t320 = t33 * t307 - t41 * t309 + minus_s_distal_leg2 * t312;
-        let t327 = minus_s_distal_leg3 * t307 - t64 * t309 + t5 * t312;
-        let t342 = t281 - t112 + t53 * t245;
-        let t346 = t286 - t128 + minus_s_distal_leg2 * t245;
-        let t351 = t292 - t136 + t5 * t245;
-        let t364 = 9.81 * t64;
-        let t366 = 9.81 * t5;
-        let t368 = t53 * t364 - minus_s_distal_leg1 * t366;
-        let t372 = minus_s_distal_leg2 * t364 - t41 * t366;
-        let t382 = 9.81 * minus_s_distal_leg3;
-        let t384 = t22 * t366 - t53 * t382;
-        let t388 = t33 * t366 - minus_s_distal_leg2 * t382;
-        let t399 = minus_s_distal_leg1 * t382 - t22 * t364;
-        let t403 = t41 * t382 - t33 * t364;
-        let t419 = minus_rate_distal_leg1 * t119;
-        let t420 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t421 = t419 - t420;
-        let t427 = c_proximal_leg1 * t134 - s_proximal_leg1 * t126;
-        let t428 = t188 * t119;
-        let t433 = c_proximal_leg1 * t153 - s_proximal_leg1 * t148;
-        let t437 = c_proximal_leg1 * t167 - s_proximal_leg1 * t162;
-        let t441 = c_proximal_leg2 * t73 - s_proximal_leg2 * t134;
-        let t442 = t241 * t105;
-        let t444 = minus_rate_distal_leg2 * t105;
-        let t445 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t446 = t444 - t445;
-        let t452 = c_proximal_leg2 * t144 - s_proximal_leg2 * t153;
-        let t457 = c_proximal_leg2 * t158 - s_proximal_leg2 * t167;
-        let t461 = c_proximal_leg3 * t126 - s_proximal_leg3 * t73;
-        let t462 = t90 * t108;
-        let t466 = c_proximal_leg3 * t148 - s_proximal_leg3 * t144;
-        let t468 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t469 = rate_distal_leg3 * t108;
-        let t470 = t468 + t469;
-        let t476 = c_proximal_leg3 * t162 - s_proximal_leg3 * t158;
-        let t484 = t188 * t188;
-        let t485 = t119 * t119;
-        let t486 = t484 - t485;
-        let t491 = t241 * t241;
-        let t492 = t105 * t105;
-        let t493 = t491 - t492;
-        let t503 = t90 * t90;
-        let t504 = t108 * t108;
-        let t505 = t503 - t504;
+        let t362 = t14 * t353;
+        let rate_proximal_leg2 = twist[1] - t362;
+        let rate_dot_proximal_leg2 = acceleration[1] - t353 * minus_rate_distal_leg2
+            - t14
+                * (s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+                    + minus_rate_distal_leg2 * t362
+                    - minus_rate_distal_leg2 * rate_proximal_leg2);
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t375 = t28 * t71;
+        let rate_proximal_leg3 = twist[2] - t375;
+        let rate_dot_proximal_leg3 = acceleration[2] + t71 * rate_distal_leg3
+            - t28
+                * (t64 + rate_distal_leg3 * rate_proximal_leg3
+                    - rate_distal_leg3 * t375);
+        let t383 = 9.81 * c_proximal_leg1;
+        let t384 = 9.81 * s_proximal_leg2;
+        let t390 = minus_rate_distal_leg1 * t88;
+        let t391 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t393 = t390 + t390 - t391;
+        let t397 = c_proximal_leg1 * t103 - s_proximal_leg1 * t95;
+        let t398 = t154 * t88;
+        let t403 = c_proximal_leg1 * t122 - s_proximal_leg1 * t117;
+        let t407 = c_proximal_leg1 * t136 - s_proximal_leg1 * t131;
+        let t411 = c_proximal_leg2 * t61 - s_proximal_leg2 * t103;
+        let t412 = c_distal_leg2 * rate_proximal_leg2;
+        let t413 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t414 = t412 * t413;
+        let t416 = minus_rate_distal_leg2 * t413;
+        let t417 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t419 = t416 + t416 - t417;
+        let t423 = c_proximal_leg2 * t113 - s_proximal_leg2 * t122;
+        let t428 = c_proximal_leg2 * t127 - s_proximal_leg2 * t136;
+        let t432 = c_proximal_leg3 * t95 - s_proximal_leg3 * t61;
+        let t433 = c_distal_leg3 * rate_proximal_leg3;
+        let t434 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t435 = t433 * t434;
+        let t439 = c_proximal_leg3 * t117 - s_proximal_leg3 * t113;
+        let t441 = rate_distal_leg3 * t434;
+        let t442 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t444 = t441 + t442 + t441;
+        let t448 = c_proximal_leg3 * t131 - s_proximal_leg3 * t127;
+        let t455 = t154 * t154;
+        let t456 = t88 * t88;
+        let t457 = t455 - t456;
+        let t462 = t412 * t412;
+        let t463 = t413 * t413;
+        let t464 = t462 - t463;
+        let t466 = minus_rate_distal_leg2 * t412;
+        let t467 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t476 = t433 * t433;
+        let t477 = t434 * t434;
+        let t478 = t476 - t477;
+        let t482 = rate_distal_leg3 * t433;
+        let t483 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t116 * rate_proximal_leg1;
-        let t522 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+            - c_proximal_leg1 * acceleration[2] + t85 * rate_proximal_leg1;
+        let t497 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t102 * rate_proximal_leg2;
-        let t538 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+            - c_proximal_leg2 * acceleration[0] + t353 * rate_proximal_leg2;
+        let t513 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t82 * rate_proximal_leg3;
-        let t554 = rate_distal_leg3 * rate_distal_leg3;
+            - s_proximal_leg3 * acceleration[0] - t71 * rate_proximal_leg3;
+        let t529 = rate_distal_leg3 * rate_distal_leg3;
+        let t563 = 9.81 * t53;
+        let t568 = 9.81 * t5;
+        let t574 = 9.81 * minus_s_distal_leg3;
         Ok([
             [
-                t73 * t124 + t126 * t131 + t134 * t139, t73 * t200 + t126 * t206 + t134 * t213,
-                t73 * t254 + t126 * t260 + t134 * t267, t73 * t283 + t126 * t288 + t134 * t294,
-                t73 * t314 + t126 * t320 + t134 * t327, t73 * t342 + t126 * t346 + t134 * t351,
-                t73 * t368 + t126 * t372, t73 * t384 + t126 * t388, t73 * t399 + t126 * t403,
-                rate_dot_proximal_leg1, 0.0, 0.0, -(9.81 * c_proximal_leg1), 0.0,
-                9.81 * s_proximal_leg1, 0.0, rate_proximal_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                -(c_distal_leg1 * t421 + minus_s_distal_leg1 * t189 + t427 * t428), -(t441 * t442),
-                -(t461 * t462),
-                c_distal_leg1 * (t189 + t190) - minus_s_distal_leg1 * (t419 + t421)
-                    + t427 * t486,
-                t441 * t493,
-                t461 * t505,
-                -(c_distal_leg1 * (t428 - minus_rate_dot_distal_leg1)
-                    + minus_s_distal_leg1 * (t522 - t484) + t427 * t420),
-                -(t441 * t445),
-                -(t461 * t468),
-                minus_s_distal_leg1 * (t428 + minus_rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t485 - t522) - t427 * t187,
-                -(t441 * t240),
-                -(t461 * t96),
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t427 * t364,
-                -(t441 * t366),
-                -(t461 * t382),
+                t61 * t93 + t95 * t100 + t103 * t108, t61 * t169 + t95 * t175 + t103 * t182,
+                t61 * t208 + t95 * t214 + t103 * t221, t61 * t237 + t95 * t242 + t103 * t248,
+                t61 * t268 + t95 * t274 + t103 * t281, t61 * t296 + t95 * t300 + t103 * t305,
+                t61 * t318 - t95 * t320, t61 * t329 - t95 * t331, t61 * t340 - t95 * t342,
+                rate_dot_proximal_leg1, 0.0, 0.0, -t383, 0.0, 9.81 * s_proximal_leg1, 0.0,
+                rate_proximal_leg1, 0.0, 0.0, ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0,
+                1.0, 0.0, 0.0, -(c_distal_leg1 * t393 + t397 * t398), -(t411 * t414),
+                -(t432 * t435),
+                c_distal_leg1 * (t155 + t156) - minus_s_distal_leg1 * t393 + t397 * t457,
+                t411 * t464, t432 * t478,
+                -(c_distal_leg1 * (t398 - minus_rate_dot_distal_leg1)
+                    + minus_s_distal_leg1 * (t497 - t455) + t397 * t391),
+                -(t411 * t417),
+                -(t432 * t442),
+                minus_s_distal_leg1 * (t398 + minus_rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t456 - t497) - t397 * t153,
+                -(t411 * t467),
+                -(t432 * t483),
+                minus_s_distal_leg1 * t383 - t397 * t563,
+                -(t411 * t568),
+                -(t432 * t574),
             ],
             [
-                t144 * t124 + t148 * t131 + t153 * t139, t144 * t200 + t148 * t206 + t153 * t213,
-                t144 * t254 + t148 * t260 + t153 * t267, t144 * t283 + t148 * t288 + t153 * t294,
-                t144 * t314 + t148 * t320 + t153 * t327, t144 * t342 + t148 * t346 + t153 * t351,
-                t144 * t368 + t148 * t372, t144 * t384 + t148 * t388, t144 * t399 + t148 * t403,
-                0.0, rate_dot_proximal_leg2, 0.0, 0.0, 9.81 * s_proximal_leg2, 0.0,
-                9.81 * c_proximal_leg2, 0.0, rate_proximal_leg2, 0.0, 0.0,
-                ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0, -(t433 * t428),
-                -(c_distal_leg2 * t446 + minus_s_distal_leg2 * t242 + t452 * t442), -(t466 * t462),
-                t433 * t486,
-                c_distal_leg2 * (t242 + t243) - minus_s_distal_leg2 * (t444 + t446)
-                    + t452 * t493,
-                t466 * t505,
-                -(t433 * t420),
-                -(c_distal_leg2 * (t442 - minus_rate_dot_distal_leg2)
-                    + minus_s_distal_leg2 * (t538 - t491) + t452 * t445),
-                -(t466 * t468),
-                -(t433 * t187),
-                minus_s_distal_leg2 * (t442 + minus_rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t492 - t538) - t452 * t240,
-                -(t466 * t96),
-                -(t433 * t364),
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t452 * t366),
-                -(t466 * t382),
+                t113 * t93 + t117 * t100 + t122 * t108, t113 * t169 + t117 * t175 + t122 * t182,
+                t113 * t208 + t117 * t214 + t122 * t221, t113 * t237 + t117 * t242 + t122 * t248,
+                t113 * t268 + t117 * t274 + t122 * t281, t113 * t296 + t117 * t300 + t122 * t305,
+                t113 * t318 - t117 * t320, t113 * t329 - t117 * t331, t113 * t340 - t117 * t342,
+                0.0, rate_dot_proximal_leg2, 0.0, 0.0, t384, 0.0, 9.81 * c_proximal_leg2, 0.0,
+                rate_proximal_leg2, 0.0, 0.0, ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0,
+                1.0, 0.0, -(t403 * t398), -(c_distal_leg2 * t419 + t423 * t414), -(t439 * t435),
+                t403 * t457,
+                c_distal_leg2 * (t466 + t467 + t466) - minus_s_distal_leg2 * t419
+                    + t423 * t464,
+                t439 * t478,
+                -(t403 * t391),
+                -(c_distal_leg2 * (t414 - minus_rate_dot_distal_leg2)
+                    + minus_s_distal_leg2 * (t513 - t462) + t423 * t417),
+                -(t439 * t442),
+                -(t403 * t153),
+                minus_s_distal_leg2 * (t414 + minus_rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t463 - t513) - t423 * t467,
+                -(t439 * t483),
+                -(t403 * t563),
+                -(minus_s_distal_leg2 * t384 + t423 * t568),
+                -(t439 * t574),
             ],
             [
-                t158 * t124 + t162 * t131 + t167 * t139, t158 * t200 + t162 * t206 + t167 * t213,
-                t158 * t254 + t162 * t260 + t167 * t267, t158 * t283 + t162 * t288 + t167 * t294,
-                t158 * t314 + t162 * t320 + t167 * t327, t158 * t342 + t162 * t346 + t167 * t351,
-                t158 * t368 + t162 * t372, t158 * t384 + t162 * t388, t158 * t399 + t162 * t403,
+                t127 * t93 + t131 * t100 + t136 * t108, t127 * t169 + t131 * t175 + t136 * t182,
+                t127 * t208 + t131 * t214 + t136 * t221, t127 * t237 + t131 * t242 + t136 * t248,
+                t127 * t268 + t131 * t274 + t136 * t281, t127 * t296 + t131 * t300 + t136 * t305,
+                t127 * t318 - t131 * t320, t127 * t329 - t131 * t331, t127 * t340 - t131 * t342,
                 0.0, 0.0, rate_dot_proximal_leg3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rate_proximal_leg3,
-                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, -(t437 * t428),
-                -(t457 * t442), c_distal_leg3 * t470 + minus_s_distal_leg3 * t91 - t476 * t462,
-                t437 * t486, t457 * t493,
-                minus_s_distal_leg3 * (t469 + t470) - c_distal_leg3 * (t91 + t97)
-                    + t476 * t505,
-                -(t437 * t420),
-                -(t457 * t445),
-                -(c_distal_leg3 * (t462 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t554 - t503) + t476 * t468),
-                -(t437 * t187),
-                -(t457 * t240),
-                minus_s_distal_leg3 * (t462 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t504 - t554) - t476 * t96,
-                -(t437 * t364),
-                -(t457 * t366),
-                -(t476 * t382),
+                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, -(t407 * t398),
+                -(t428 * t414), c_distal_leg3 * t444 - t448 * t435, t407 * t457, t428 * t464,
+                minus_s_distal_leg3 * t444 - c_distal_leg3 * (t482 + t482 - t483)
+                    + t448 * t478,
+                -(t407 * t391),
+                -(t428 * t417),
+                -(c_distal_leg3 * (t435 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t529 - t476) + t448 * t442),
+                -(t407 * t153),
+                -(t428 * t467),
+                minus_s_distal_leg3 * (t435 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t477 - t529) - t448 * t483,
+                -(t407 * t563),
+                -(t428 * t568),
+                -(t448 * t574),
             ],
         ])
     }
@@ -4604,7 +4460,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 588 operations (222 additions, 362 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 518 intermediates.
+    /// 567 operations (213 additions, 350 multiplications, 4 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 497 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4687,212 +4543,207 @@ impl Spherical3Rrr {
         let t116 = (gproximal_wy_leg1 * gproximal_wz_leg2 - gproximal_wz_leg1) * t31;
         let t120 = (gproximal_wz_leg2 - gproximal_wz_leg1 * gproximal_wx_leg2) * t31;
         let t125 = (1.0 - gproximal_wy_leg1 * gproximal_wx_leg2) * t31;
-        let t128 = t79 * t69;
-        let t129 = t128 + t50;
-        let t135 = t52 * acceleration[0] + t74 * acceleration[1] + t77 * acceleration[2];
-        let t136 = t70 - t135;
+        let t132 = t52 * acceleration[0] + t74 * acceleration[1] + t77 * acceleration[2];
+        let t133 = t132 - t70;
+        let t135 = t79 * t69;
+        let t136 = t50 + t135;
         let t139 = t57 * t57;
         let t140 = t79 * t79;
         let t141 = t139 - t140;
-        let t143 = t52 * t129 - t38 * t136 + t58 * t141;
-        let t149 = t74 * t129 - t43 * t136 + t62 * t141;
-        let t156 = t77 * t129 - t48 * t136 + t67 * t141;
+        let t143 = t38 * t133 + t52 * t136 + t58 * t141;
+        let t149 = t43 * t133 + t74 * t136 + t62 * t141;
+        let t156 = t48 * t133 + t77 * t136 + t67 * t141;
         let t173 = t58 * acceleration[0] + t62 * acceleration[1] + t67 * acceleration[2];
-        let t174 = t80 + t173;
+        let t174 = t173 + t80;
         let t176 = t69 * t69;
         let t177 = t176 - t139;
-        let t180 = t128 - t50;
-        let t182 = t38 * t174 + t52 * t177 - t58 * t180;
-        let t188 = t43 * t174 + t74 * t177 - t62 * t180;
-        let t195 = t48 * t174 + t77 * t177 - t67 * t180;
-        let t209 = t38 * t128;
-        let t211 = t52 * t135 - t209 + t81;
-        let t214 = t43 * t128;
-        let t216 = t74 * t135 - t214 + t88;
-        let t220 = t48 * t128;
-        let t222 = t77 * t135 - t220 + t96;
+        let t180 = t50 - t135;
+        let t182 = t38 * t174 + t52 * t177 + t58 * t180;
+        let t188 = t43 * t174 + t74 * t177 + t62 * t180;
+        let t195 = t48 * t174 + t77 * t177 + t67 * t180;
+        let t209 = t38 * t135;
+        let t211 = t52 * t132 - t209 + t81;
+        let t214 = t43 * t135;
+        let t216 = t74 * t132 - t214 + t88;
+        let t220 = t48 * t135;
+        let t222 = t77 * t132 - t220 + t96;
         let t235 = t140 - t176;
-        let t237 = t80 - t173;
-        let t240 = t70 + t135;
-        let t242 = t38 * t235 - t52 * t237 + t58 * t240;
-        let t248 = t43 * t235 - t74 * t237 + t62 * t240;
-        let t255 = t48 * t235 - t77 * t237 + t67 * t240;
+        let t237 = t173 - t80;
+        let t240 = t132 + t70;
+        let t242 = t38 * t235 + t52 * t237 + t58 * t240;
+        let t248 = t43 * t235 + t74 * t237 + t62 * t240;
+        let t255 = t48 * t235 + t77 * t237 + t67 * t240;
         let t270 = t209 - t71 + t58 * t173;
         let t274 = t214 - t86 + t62 * t173;
         let t279 = t220 - t94 + t67 * t173;
-        let t292 = 9.81 * t77;
-        let t294 = 9.81 * t67;
-        let t296 = t58 * t292 - t52 * t294;
-        let t300 = t62 * t292 - t74 * t294;
-        let t310 = 9.81 * t48;
-        let t312 = t38 * t294 - t58 * t310;
-        let t316 = t43 * t294 - t62 * t310;
-        let t327 = t52 * t310 - t38 * t292;
-        let t331 = t74 * t310 - t43 * t292;
-        let t342 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
+        let t292 = 9.81 * t43;
+        let t294 = 9.81 * t38;
+        let t303 = 9.81 * t74;
+        let t305 = 9.81 * t52;
+        let t314 = 9.81 * t62;
+        let t316 = 9.81 * t58;
+        let t327 = minus_c_proximal_leg1 * twist[1] + minus_s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = minus_s_proximal_leg1 * twist[1]
             - minus_c_proximal_leg1 * twist[2];
-        let t348 = t18 * t342;
-        let rate_proximal_leg1 = t348 + twist[0];
-        let rate_dot_proximal_leg1 = acceleration[0] - t342 * minus_rate_distal_leg1
+        let t333 = t18 * t327;
+        let rate_proximal_leg1 = t333 + twist[0];
+        let rate_dot_proximal_leg1 = acceleration[0] - t327 * minus_rate_distal_leg1
             - t18
                 * (minus_rate_distal_leg1 * rate_proximal_leg1
-                    + minus_rate_distal_leg1 * t348
+                    + minus_rate_distal_leg1 * t333
                     - (minus_c_proximal_leg1 * acceleration[1]
                         + minus_s_proximal_leg1 * acceleration[2]));
-        let t361 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let t346 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
             - minus_c_proximal_leg2 * twist[0];
-        let t367 = t4 * t361;
-        let rate_proximal_leg2 = t367 + twist[1];
-        let rate_dot_proximal_leg2 = acceleration[1] - t361 * minus_rate_distal_leg2
+        let t352 = t4 * t346;
+        let rate_proximal_leg2 = t352 + twist[1];
+        let rate_dot_proximal_leg2 = acceleration[1] - t346 * minus_rate_distal_leg2
             - t4
                 * (minus_rate_distal_leg2 * rate_proximal_leg2
-                    + minus_rate_distal_leg2 * t367
+                    + minus_rate_distal_leg2 * t352
                     - (minus_s_proximal_leg2 * acceleration[0]
                         + minus_c_proximal_leg2 * acceleration[2]));
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t386 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
-        let t387 = t10 * t386;
-        let rate_proximal_leg3 = t387 + twist[2];
+        let t371 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t372 = t10 * t371;
+        let rate_proximal_leg3 = t372 + twist[2];
         let rate_dot_proximal_leg3 = t10
             * (minus_c_proximal_leg3 * acceleration[0]
                 + minus_s_proximal_leg3 * acceleration[1]
-                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t387)
-            + acceleration[2] + t386 * rate_distal_leg3;
-        let t397 = 9.81 * minus_c_proximal_leg1;
-        let t398 = 9.81 * minus_s_proximal_leg2;
-        let t399 = 9.81 * minus_s_proximal_leg1;
-        let t400 = 9.81 * minus_c_proximal_leg2;
-        let t404 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t405 = c_distal_leg1 * rate_proximal_leg1;
-        let t406 = minus_rate_distal_leg1 * t405;
-        let t407 = t404 + t406;
-        let t409 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t410 = minus_rate_distal_leg1 * t409;
-        let t415 = minus_s_proximal_leg1 * t84 + minus_c_proximal_leg1 * t92;
-        let t416 = t409 * t405;
-        let t421 = minus_s_proximal_leg1 * t102 + minus_c_proximal_leg1 * t111;
-        let t425 = minus_s_proximal_leg1 * t120 + minus_c_proximal_leg1 * t125;
-        let t429 = minus_c_proximal_leg2 * t32 - minus_s_proximal_leg2 * t92;
-        let t430 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t431 = c_distal_leg2 * rate_proximal_leg2;
-        let t432 = t430 * t431;
-        let t434 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t435 = minus_rate_distal_leg2 * t431;
-        let t436 = t434 + t435;
-        let t438 = minus_rate_distal_leg2 * t430;
-        let t443 = minus_s_proximal_leg2 * t111 - minus_c_proximal_leg2 * t106;
-        let t448 = minus_c_proximal_leg2 * t116 - minus_s_proximal_leg2 * t125;
-        let t452 = minus_s_proximal_leg3 * t32 + minus_c_proximal_leg3 * t84;
-        let t453 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t454 = c_distal_leg3 * rate_proximal_leg3;
-        let t455 = t453 * t454;
-        let t459 = minus_s_proximal_leg3 * t106 + minus_c_proximal_leg3 * t102;
-        let t461 = rate_distal_leg3 * t454;
-        let t462 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t463 = t461 - t462;
-        let t465 = rate_distal_leg3 * t453;
-        let t470 = minus_s_proximal_leg3 * t116 + minus_c_proximal_leg3 * t120;
-        let t473 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t480 = t409 * t409;
-        let t481 = t405 * t405;
+                + rate_distal_leg3 * rate_proximal_leg3 + rate_distal_leg3 * t372)
+            + acceleration[2] + t371 * rate_distal_leg3;
+        let t382 = 9.81 * minus_c_proximal_leg1;
+        let t383 = 9.81 * minus_s_proximal_leg2;
+        let t384 = 9.81 * minus_s_proximal_leg1;
+        let t385 = 9.81 * minus_c_proximal_leg2;
+        let t389 = c_distal_leg1 * rate_proximal_leg1;
+        let t390 = minus_rate_distal_leg1 * t389;
+        let t391 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t393 = t390 + t391 + t390;
+        let t397 = minus_s_proximal_leg1 * t84 + minus_c_proximal_leg1 * t92;
+        let t398 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t399 = t398 * t389;
+        let t404 = minus_s_proximal_leg1 * t102 + minus_c_proximal_leg1 * t111;
+        let t408 = minus_s_proximal_leg1 * t120 + minus_c_proximal_leg1 * t125;
+        let t412 = minus_c_proximal_leg2 * t32 - minus_s_proximal_leg2 * t92;
+        let t413 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t414 = c_distal_leg2 * rate_proximal_leg2;
+        let t415 = t413 * t414;
+        let t417 = minus_rate_distal_leg2 * t414;
+        let t418 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t420 = t417 + t418 + t417;
+        let t424 = minus_s_proximal_leg2 * t111 - minus_c_proximal_leg2 * t106;
+        let t429 = minus_c_proximal_leg2 * t116 - minus_s_proximal_leg2 * t125;
+        let t433 = minus_s_proximal_leg3 * t32 + minus_c_proximal_leg3 * t84;
+        let t434 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t435 = c_distal_leg3 * rate_proximal_leg3;
+        let t436 = t434 * t435;
+        let t440 = minus_s_proximal_leg3 * t106 + minus_c_proximal_leg3 * t102;
+        let t442 = rate_distal_leg3 * t435;
+        let t443 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t445 = t442 + t442 - t443;
+        let t449 = minus_s_proximal_leg3 * t116 + minus_c_proximal_leg3 * t120;
+        let t452 = minus_rate_distal_leg1 * t398;
+        let t453 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t459 = t398 * t398;
+        let t460 = t389 * t389;
+        let t461 = t459 - t460;
+        let t466 = t413 * t413;
+        let t467 = t414 * t414;
+        let t468 = t466 - t467;
+        let t470 = minus_rate_distal_leg2 * t413;
+        let t471 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t480 = t434 * t434;
+        let t481 = t435 * t435;
         let t482 = t480 - t481;
-        let t487 = t430 * t430;
-        let t488 = t431 * t431;
-        let t489 = t487 - t488;
-        let t491 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t501 = t453 * t453;
-        let t502 = t454 * t454;
-        let t503 = t501 - t502;
-        let t508 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t486 = rate_distal_leg3 * t434;
+        let t487 = c_distal_leg3 * rate_dot_proximal_leg3;
         let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
-            - minus_c_proximal_leg1 * acceleration[2] + t342 * rate_proximal_leg1;
-        let t522 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+            - minus_c_proximal_leg1 * acceleration[2] + t327 * rate_proximal_leg1;
+        let t501 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
         let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
-            - minus_c_proximal_leg2 * acceleration[0] + t361 * rate_proximal_leg2;
-        let t538 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t547 = rate_distal_leg3 * rate_distal_leg3;
+            - minus_c_proximal_leg2 * acceleration[0] + t346 * rate_proximal_leg2;
+        let t517 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t526 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
-            - minus_s_proximal_leg3 * acceleration[0] - t386 * rate_proximal_leg3;
-        let t588 = minus_s_distal_leg1 * t399;
-        let t593 = minus_s_distal_leg2 * t400;
-        let t599 = 9.81 * c_distal_leg3;
+            - minus_s_proximal_leg3 * acceleration[0] - t371 * rate_proximal_leg3;
+        let t567 = minus_s_distal_leg1 * t384;
+        let t572 = minus_s_distal_leg2 * t385;
+        let t578 = 9.81 * c_distal_leg3;
         Ok([
             [
                 t32 * t82 - t84 * t89 + t92 * t97, t32 * t143 - t84 * t149 + t92 * t156,
                 t32 * t182 - t84 * t188 + t92 * t195, t32 * t211 - t84 * t216 + t92 * t222,
                 t32 * t242 - t84 * t248 + t92 * t255, t32 * t270 - t84 * t274 + t92 * t279,
-                t32 * t296 - t84 * t300, t32 * t312 - t84 * t316, t32 * t327 - t84 * t331,
-                rate_dot_proximal_leg1, 0.0, 0.0, -t397, 0.0, t399, 0.0, rate_proximal_leg1, 0.0,
+                t32 * t292 + t84 * t294, t32 * t303 + t84 * t305, t32 * t314 + t84 * t316,
+                rate_dot_proximal_leg1, 0.0, 0.0, -t382, 0.0, t384, 0.0, rate_proximal_leg1, 0.0,
                 0.0, ::overact::math::sign(rate_proximal_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                minus_s_distal_leg1 * t407 + c_distal_leg1 * t410 + t415 * t416, t429 * t432,
-                -(t452 * t455),
-                minus_s_distal_leg1 * (t410 - (t473 - t410))
-                    - c_distal_leg1 * (t406 + t407) + t415 * t482,
-                t429 * t489,
-                -(t452 * t503),
-                minus_s_distal_leg1 * (t416 + minus_rate_dot_distal_leg1)
-                    + c_distal_leg1 * (t522 - t480) - t415 * t404,
-                -(t429 * t434),
-                t452 * t462,
-                t415 * t473
-                    - (minus_s_distal_leg1 * (t481 - t522)
-                        + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t416)),
-                t429 * t491,
-                -(t452 * t508),
-                -(c_distal_leg1 * t397 + t415 * t588),
-                -(t429 * t593),
-                -(t452 * t599),
+                minus_s_distal_leg1 * t393 + t397 * t399, t412 * t415, -(t433 * t436),
+                minus_s_distal_leg1 * (t452 - (t453 - t452)) - c_distal_leg1 * t393
+                    + t397 * t461,
+                t412 * t468,
+                -(t433 * t482),
+                minus_s_distal_leg1 * (t399 + minus_rate_dot_distal_leg1)
+                    + c_distal_leg1 * (t501 - t459) - t397 * t391,
+                -(t412 * t418),
+                t433 * t443,
+                t397 * t453
+                    - (minus_s_distal_leg1 * (t460 - t501)
+                        + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t399)),
+                t412 * t471,
+                -(t433 * t487),
+                -(c_distal_leg1 * t382 + t397 * t567),
+                -(t412 * t572),
+                -(t433 * t578),
             ],
             [
                 t102 * t89 - t106 * t82 - t111 * t97, t102 * t149 - t106 * t143 - t111 * t156,
                 t102 * t188 - t106 * t182 - t111 * t195, t102 * t216 - t106 * t211 - t111 * t222,
                 t102 * t248 - t106 * t242 - t111 * t255, t102 * t274 - t106 * t270 - t111 * t279,
-                t102 * t300 - t106 * t296, t102 * t316 - t106 * t312, t102 * t331 - t106 * t327,
-                0.0, rate_dot_proximal_leg2, 0.0, 0.0, t398, 0.0, t400, 0.0, rate_proximal_leg2,
-                0.0, 0.0, ::overact::math::sign(rate_proximal_leg2), 0.0, 0.0, 1.0, 0.0,
-                -(t421 * t416), minus_s_distal_leg2 * t436 + c_distal_leg2 * t438 + t443 * t432,
-                t459 * t455, -(t421 * t482),
-                minus_s_distal_leg2 * (t438 - (t491 - t438))
-                    - c_distal_leg2 * (t435 + t436) + t443 * t489,
-                t459 * t503,
-                t421 * t404,
-                minus_s_distal_leg2 * (t432 + minus_rate_dot_distal_leg2)
-                    + c_distal_leg2 * (t538 - t487) - t443 * t434,
-                -(t459 * t462),
-                -(t421 * t473),
-                t443 * t491
-                    - (minus_s_distal_leg2 * (t488 - t538)
-                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t432)),
-                t459 * t508,
-                t421 * t588,
-                c_distal_leg2 * t398 - t443 * t593,
-                t459 * t599,
+                -(t106 * t292 + t102 * t294), -(t106 * t303 + t102 * t305),
+                -(t106 * t314 + t102 * t316), 0.0, rate_dot_proximal_leg2, 0.0, 0.0, t383, 0.0,
+                t385, 0.0, rate_proximal_leg2, 0.0, 0.0, ::overact::math::sign(rate_proximal_leg2),
+                0.0, 0.0, 1.0, 0.0, -(t404 * t399), minus_s_distal_leg2 * t420 + t424 * t415,
+                t440 * t436, -(t404 * t461),
+                minus_s_distal_leg2 * (t470 - (t471 - t470)) - c_distal_leg2 * t420
+                    + t424 * t468,
+                t440 * t482,
+                t404 * t391,
+                minus_s_distal_leg2 * (t415 + minus_rate_dot_distal_leg2)
+                    + c_distal_leg2 * (t517 - t466) - t424 * t418,
+                -(t440 * t443),
+                -(t404 * t453),
+                t424 * t471
+                    - (minus_s_distal_leg2 * (t467 - t517)
+                        + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t415)),
+                t440 * t487,
+                t404 * t567,
+                c_distal_leg2 * t383 - t424 * t572,
+                t440 * t578,
             ],
             [
                 t116 * t82 - t120 * t89 + t125 * t97, t116 * t143 - t120 * t149 + t125 * t156,
                 t116 * t182 - t120 * t188 + t125 * t195, t116 * t211 - t120 * t216 + t125 * t222,
                 t116 * t242 - t120 * t248 + t125 * t255, t116 * t270 - t120 * t274 + t125 * t279,
-                t116 * t296 - t120 * t300, t116 * t312 - t120 * t316, t116 * t327 - t120 * t331,
+                t116 * t292 + t120 * t294, t116 * t303 + t120 * t305, t116 * t314 + t120 * t316,
                 0.0, 0.0, rate_dot_proximal_leg3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rate_proximal_leg3,
-                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, t425 * t416,
-                t448 * t432, -(minus_s_distal_leg3 * t463 + c_distal_leg3 * t465 + t470 * t455),
-                t425 * t482, t448 * t489,
-                c_distal_leg3 * (t461 + t463)
-                    - minus_s_distal_leg3 * (t465 + t508 + t465) - t470 * t503,
-                -(t425 * t404),
-                -(t448 * t434),
-                c_distal_leg3 * (t547 - t501)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t455) + t470 * t462,
-                t425 * t473,
-                t448 * t491,
-                c_distal_leg3 * (t455 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t502 - t547) - t470 * t508,
-                -(t425 * t588),
-                -(t448 * t593),
-                -(t470 * t599),
+                0.0, 0.0, ::overact::math::sign(rate_proximal_leg3), 0.0, 0.0, 1.0, t408 * t399,
+                t429 * t415, -(minus_s_distal_leg3 * t445 + t449 * t436), t408 * t461, t429 * t468,
+                c_distal_leg3 * t445 - minus_s_distal_leg3 * (t486 + t487 + t486)
+                    - t449 * t482,
+                -(t408 * t391),
+                -(t429 * t418),
+                c_distal_leg3 * (t526 - t480)
+                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t436) + t449 * t443,
+                t408 * t453,
+                t429 * t471,
+                c_distal_leg3 * (t436 + rate_dot_distal_leg3)
+                    - minus_s_distal_leg3 * (t481 - t526) - t449 * t487,
+                -(t408 * t567),
+                -(t429 * t572),
+                -(t449 * t578),
             ],
         ])
     }
@@ -4907,7 +4758,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 682 operations (256 additions, 416 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 609 intermediates.
+    /// 649 operations (246 additions, 396 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 576 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4930,334 +4781,321 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let t16 = 1.0 / c_distal_leg2;
-        let t17 = minus_s_distal_leg2 * t16;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t17;
-        let t20 = 2.0 * pose[3];
-        let t21 = pose[3] * t20;
-        let t22 = 1.0 - t4 - t21;
-        let t23 = pose[3] * t0;
-        let t24 = pose[0] * t3;
-        let minus_s_distal_leg3 = t23 - t24;
-        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t27, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t27);
+        let t12 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t5 * t12;
+        let t14 = minus_s_distal_leg2 * t12;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t14;
+        let t16 = pose[2] * t0;
+        let t17 = 2.0 * pose[3];
+        let t18 = pose[0] * t17;
+        let t19 = t16 + t18;
+        let t20 = pose[3] * t0;
+        let t21 = pose[0] * t3;
+        let minus_s_distal_leg3 = t20 - t21;
+        let t24 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t24, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t30 = 1.0 / (t22 * c_distal_leg3);
-        let t31 = pose[2] * t0;
-        let t32 = pose[0] * t20;
-        let t33 = t31 + t32;
-        let s_proximal_leg3 = t30 * (t22 * t33);
-        let t36 = 1.0 / c_distal_leg3;
-        let t37 = minus_s_distal_leg3 * t36;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
-        let t40 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
-        let t41 = t2 - t21;
-        let minus_s_distal_leg1 = t31 - t32;
-        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t44, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t44);
+        let t26 = 1.0 / c_distal_leg3;
+        let s_proximal_leg3 = t19 * t26;
+        let t28 = minus_s_distal_leg3 * t26;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t28;
+        let t31 = 1.0 - minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3;
+        let t32 = pose[3] * t17;
+        let t33 = t2 - t32;
+        let minus_s_distal_leg1 = t16 - t18;
+        let t36 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t36, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t36);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t47 = 1.0 / (t41 * c_distal_leg1);
-        let c_proximal_leg1 = t47 * (t41 * t41);
-        let t50 = 1.0 / c_distal_leg1;
-        let t51 = minus_s_distal_leg1 * t50;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t51;
-        let t53 = t23 + t24;
-        let s_proximal_leg2 = t13 * (t53 * t5);
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t17;
-        let c_proximal_leg3 = t30 * (t22 * t22);
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
-        let t61 = minus_gproximal_wx_leg2
+        let t38 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t33 * t38;
+        let t40 = minus_s_distal_leg1 * t38;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t40;
+        let t42 = t20 + t21;
+        let s_proximal_leg2 = t12 * t42;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t14;
+        let t46 = 1.0 - t4 - t32;
+        let c_proximal_leg3 = t46 * t26;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t28;
+        let t50 = minus_gproximal_wx_leg2
             + minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3;
-        let t64 = t6 + t7;
-        let s_proximal_leg1 = t47 * (t41 * t64);
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t51;
-        let t69 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
+        let t53 = t6 + t7;
+        let s_proximal_leg1 = t38 * t53;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t40;
+        let t57 = minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg3;
-        let t71 = t40 - minus_gproximal_wy_leg1 * t61 - minus_gproximal_wz_leg1 * t69;
-        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t71, 1.0, "kept actuators")?;
-        let t72 = 1.0 / t71;
-        let t73 = t40 * t72;
-        let t77 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t59 = t31 - minus_gproximal_wy_leg1 * t50 - minus_gproximal_wz_leg1 * t57;
+        ::overact::guard::platform(t59, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t59, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t59, 1.0, "kept actuators")?;
+        let t60 = 1.0 / t59;
+        let t61 = t31 * t60;
+        let t65 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t77, 1.0, "actuators")?;
-        ::overact::guard::platform(t77, 1.0, "actuators")?;
-        let t78 = 1.0 / t77;
-        let t85 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t65, 1.0, "actuators")?;
+        ::overact::guard::platform(t65, 1.0, "actuators")?;
+        let t66 = 1.0 / t65;
+        let t73 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t86 = t85 * t78;
-        let t88 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t85 * t86;
-        ::overact::guard::platform(t88, 1.0, "actuators")?;
-        ::overact::guard::platform(t88, 1.0, "actuators")?;
-        let t89 = 1.0 / t88;
-        let t97 = actuator_velocities[0]
+        let t74 = t73 * t66;
+        let t76 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t73 * t74;
+        ::overact::guard::platform(t76, 1.0, "actuators")?;
+        ::overact::guard::platform(t76, 1.0, "actuators")?;
+        let t77 = 1.0 / t76;
+        let t85 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t99 = actuator_velocities[1]
+        let t87 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t97 * t86;
-        let t106 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t85 * t74;
+        let t94 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t107 = t106 * t78;
-        let t109 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t85 * t107;
-        let t110 = t109 * t89;
-        let t118 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t106 * t107
-            - t109 * t110;
-        ::overact::guard::platform(t118, 1.0, "actuators")?;
-        ::overact::guard::platform(t118, 1.0, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t128 = t119
+        let t95 = t94 * t66;
+        let t97 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t73 * t95;
+        let t98 = t97 * t77;
+        let t106 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t94 * t95
+            - t97 * t98;
+        ::overact::guard::platform(t106, 1.0, "actuators")?;
+        ::overact::guard::platform(t106, 1.0, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t116 = t107
             * (actuator_velocities[2]
                 - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t97 * t107
-                - t110 * t99);
-        let t130 = t89 * t99 - t110 * t128;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t130 - c_proximal_leg1 * t128;
-        let t136 = c_proximal_leg1 * t130 + s_proximal_leg1 * t128;
-        let t140 = minus_rate_distal_leg1 * (t51 * t136)
-            - actuator_velocities[0] * minus_rate_distal_leg1;
-        let minus_rate_dot_proximal_leg1 = t51 * t140 + t136 * minus_rate_distal_leg1;
-        let t144 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t150 = t97 * t78 - t86 * t130 - t107 * t128;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t128 - c_proximal_leg2 * t150;
-        let t155 = s_proximal_leg2 * t150 + c_proximal_leg2 * t128;
-        let t159 = minus_rate_distal_leg2 * (t17 * t155)
-            - actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t17 * t159 + t155 * minus_rate_distal_leg2;
-        let t163 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_distal_leg3 = c_proximal_leg3 * t130 - s_proximal_leg3 * t150;
-        let t172 = c_proximal_leg3 * t150 + s_proximal_leg3 * t130;
-        let t175 = actuator_velocities[2] * rate_distal_leg3
-            - rate_distal_leg3 * (t37 * t172);
-        let minus_rate_dot_proximal_leg3 = t37 * t175 - t172 * rate_distal_leg3;
-        let t179 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t181 = t144 - minus_gproximal_wx_leg2 * t163
-            - minus_gproximal_wx_leg3 * t179;
-        let t188 = t163 - minus_gproximal_wy_leg1 * t144 - minus_gproximal_wy_leg3 * t179
-            - t86 * t181;
-        let t198 = t119
-            * (t179 - (minus_gproximal_wz_leg1 * t144 + minus_gproximal_wz_leg2 * t163)
-                - t107 * t181 - t110 * t188);
-        let t200 = t89 * t188 - t110 * t198;
-        let t204 = t78 * t181 - t86 * t200 - t107 * t198;
-        let rate_dot_wrist_leg3 = t36
-            * (c_proximal_leg3 * t204 + s_proximal_leg3 * t200 + t175);
-        let t210 = c_distal_leg3 * actuator_velocities[2];
-        let t211 = rate_distal_leg3 * t210;
-        let t212 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t213 = t211 - t212;
-        let t214 = rate_dot_wrist_leg3 - t213;
-        let t216 = minus_s_distal_leg2 * actuator_velocities[1];
-        let rate_wrist_leg2 = t16 * t155;
-        let t218 = t216 + rate_wrist_leg2;
-        let t219 = minus_s_distal_leg3 * actuator_velocities[2];
-        let rate_wrist_leg3 = t36 * t172;
-        let t221 = t219 + rate_wrist_leg3;
-        let t222 = t218 * t221;
-        let t223 = minus_s_distal_leg1 * t222;
-        let t225 = minus_s_distal_leg1 * actuator_velocities[0];
-        let rate_wrist_leg1 = t50 * t136;
-        let t227 = t225 + rate_wrist_leg1;
-        let t228 = t227 * t221;
-        let t229 = t53 * t228;
-        let t230 = t22 * t214 + t223 - t229;
-        let t232 = t61 * t72;
-        let t234 = t41 * t222;
-        let t236 = minus_s_distal_leg2 * t228;
-        let t237 = t33 * t214 + t234 - t236;
-        let t240 = t69 * t72;
-        let t242 = t64 * t222;
-        let t244 = t5 * t228;
-        let t245 = minus_s_distal_leg3 * t214 + t242 - t244;
-        let t250 = (minus_gproximal_wy_leg1
-            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t72;
-        let t254 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t72;
-        let t259 = (minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t72;
-        let t264 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1) * t72;
-        let t268 = (minus_gproximal_wz_leg2
-            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t72;
-        let t273 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t72;
-        let t276 = t227 * t218;
-        let t277 = t276 + t214;
-        let t279 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t280 = c_distal_leg1 * actuator_velocities[0];
-        let t281 = minus_rate_distal_leg1 * t280;
-        let t282 = t279 + t281;
-        let rate_dot_wrist_leg1 = t50
-            * (c_proximal_leg1 * t200 + s_proximal_leg1 * t198 + t140);
-        let t288 = t282 + rate_dot_wrist_leg1;
-        let t289 = t222 - t288;
-        let t292 = t221 * t221;
-        let t293 = t227 * t227;
-        let t294 = t292 - t293;
-        let t296 = minus_s_distal_leg1 * t277 - t22 * t289 + t53 * t294;
-        let t302 = t41 * t277 - t33 * t289 + minus_s_distal_leg2 * t294;
-        let t309 = t64 * t277 - minus_s_distal_leg3 * t289 + t5 * t294;
-        let t322 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t323 = c_distal_leg2 * actuator_velocities[1];
-        let t324 = minus_rate_distal_leg2 * t323;
-        let t325 = t322 + t324;
-        let rate_dot_wrist_leg2 = t16
-            * (s_proximal_leg2 * t204 + c_proximal_leg2 * t198 + t159);
-        let t331 = t325 + rate_dot_wrist_leg2;
-        let t332 = t228 + t331;
-        let t334 = t218 * t218;
-        let t335 = t334 - t292;
-        let t338 = t276 - t214;
-        let t340 = t22 * t332 + minus_s_distal_leg1 * t335 - t53 * t338;
-        let t346 = t33 * t332 + t41 * t335 - minus_s_distal_leg2 * t338;
-        let t353 = minus_s_distal_leg3 * t332 + t64 * t335 - t5 * t338;
-        let t367 = t22 * t276;
-        let t369 = minus_s_distal_leg1 * t288 - t367 + t229;
-        let t372 = t33 * t276;
-        let t374 = t41 * t288 - t372 + t236;
-        let t378 = minus_s_distal_leg3 * t276;
-        let t380 = t64 * t288 - t378 + t244;
-        let t393 = t293 - t334;
-        let t395 = t228 - t331;
-        let t398 = t222 + t288;
-        let t400 = t22 * t393 - minus_s_distal_leg1 * t395 + t53 * t398;
-        let t406 = t33 * t393 - t41 * t395 + minus_s_distal_leg2 * t398;
-        let t413 = minus_s_distal_leg3 * t393 - t64 * t395 + t5 * t398;
-        let t428 = t367 - t223 + t53 * t331;
-        let t432 = t372 - t234 + minus_s_distal_leg2 * t331;
-        let t437 = t378 - t242 + t5 * t331;
-        let t450 = 9.81 * t64;
-        let t452 = 9.81 * t5;
-        let t454 = t53 * t450 - minus_s_distal_leg1 * t452;
-        let t458 = minus_s_distal_leg2 * t450 - t41 * t452;
-        let t468 = 9.81 * minus_s_distal_leg3;
-        let t470 = t22 * t452 - t53 * t468;
-        let t474 = t33 * t452 - minus_s_distal_leg2 * t468;
-        let t485 = minus_s_distal_leg1 * t468 - t22 * t450;
-        let t489 = t41 * t468 - t33 * t450;
-        let t505 = minus_rate_distal_leg1 * t225;
-        let t506 = c_distal_leg1 * actuator_accelerations[0];
-        let t507 = t505 - t506;
-        let t513 = c_proximal_leg1 * t240 - s_proximal_leg1 * t232;
-        let t514 = t280 * t225;
-        let t519 = c_proximal_leg1 * t259 - s_proximal_leg1 * t254;
-        let t523 = c_proximal_leg1 * t273 - s_proximal_leg1 * t268;
-        let t527 = c_proximal_leg2 * t73 - s_proximal_leg2 * t240;
-        let t528 = t323 * t216;
-        let t530 = minus_rate_distal_leg2 * t216;
-        let t531 = c_distal_leg2 * actuator_accelerations[1];
-        let t532 = t530 - t531;
-        let t538 = c_proximal_leg2 * t250 - s_proximal_leg2 * t259;
-        let t543 = c_proximal_leg2 * t264 - s_proximal_leg2 * t273;
-        let t547 = c_proximal_leg3 * t232 - s_proximal_leg3 * t73;
-        let t548 = t210 * t219;
-        let t552 = c_proximal_leg3 * t254 - s_proximal_leg3 * t250;
-        let t554 = c_distal_leg3 * actuator_accelerations[2];
-        let t555 = rate_distal_leg3 * t219;
-        let t556 = t554 + t555;
-        let t562 = c_proximal_leg3 * t268 - s_proximal_leg3 * t264;
-        let t570 = t280 * t280;
-        let t571 = t225 * t225;
-        let t572 = t570 - t571;
-        let t577 = t323 * t323;
-        let t578 = t216 * t216;
-        let t579 = t577 - t578;
-        let t589 = t210 * t210;
-        let t590 = t219 * t219;
-        let t591 = t589 - t590;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t136;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t200
-            - c_proximal_leg1 * t198 + minus_rate_dot_distal_leg1;
-        let t608 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t155;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t198
-            - c_proximal_leg2 * t204 + minus_rate_dot_distal_leg2;
-        let t624 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t172;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t200 - s_proximal_leg3 * t204
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t85 * t95
+                - t98 * t87);
+        let t118 = t77 * t87 - t98 * t116;
+        let t121 = c_proximal_leg1 * t118 + s_proximal_leg1 * t116;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t118 - c_proximal_leg1 * t116;
+        let t125 = t121 * minus_rate_distal_leg1;
+        let t128 = t40 * t125 - actuator_velocities[0] * minus_rate_distal_leg1;
+        let minus_rate_dot_proximal_leg1 = t40 * t128 + t125;
+        let t131 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t136 = t85 * t66 - t74 * t118 - t95 * t116;
+        let t139 = s_proximal_leg2 * t136 + c_proximal_leg2 * t116;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t116 - c_proximal_leg2 * t136;
+        let t143 = t139 * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t14
+            * (t14 * t143 - actuator_velocities[1] * minus_rate_distal_leg2) + t143;
+        let t149 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let rate_distal_leg3 = c_proximal_leg3 * t118 - s_proximal_leg3 * t136;
+        let t158 = t46 * t136 + t19 * t118;
+        let t159 = t26 * t158;
+        let t160 = t159 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t28
+            * (actuator_velocities[2] * rate_distal_leg3 - t28 * t160) - t160;
+        let t165 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t167 = t131 - minus_gproximal_wx_leg2 * t149
+            - minus_gproximal_wx_leg3 * t165;
+        let t174 = t149 - minus_gproximal_wy_leg1 * t131 - minus_gproximal_wy_leg3 * t165
+            - t74 * t167;
+        let t184 = t107
+            * (t165 - (minus_gproximal_wz_leg1 * t131 + minus_gproximal_wz_leg2 * t149)
+                - t95 * t167 - t98 * t174);
+        let t186 = t77 * t174 - t98 * t184;
+        let t190 = t66 * t167 - t74 * t186 - t95 * t184;
+        let t195 = t46 * t190 + t19 * t186 + minus_s_distal_leg3 * t184;
+        let t198 = t158 + minus_s_distal_leg3 * t116;
+        let t203 = t42 * t136 + minus_s_distal_leg2 * t118 + t5 * t116;
+        let t204 = t198 * t203;
+        let t205 = minus_s_distal_leg1 * t204;
+        let t207 = minus_s_distal_leg1 * actuator_velocities[0];
+        let rate_wrist_leg1 = t38 * t121;
+        let t209 = t207 + rate_wrist_leg1;
+        let t210 = t209 * t198;
+        let t211 = t42 * t210;
+        let t212 = t46 * t195 + t205 - t211;
+        let t214 = t50 * t60;
+        let t216 = t33 * t204;
+        let t218 = minus_s_distal_leg2 * t210;
+        let t219 = t19 * t195 + t216 - t218;
+        let t222 = t57 * t60;
+        let t224 = t53 * t204;
+        let t226 = t5 * t210;
+        let t227 = minus_s_distal_leg3 * t195 + t224 - t226;
+        let t232 = (minus_gproximal_wy_leg1
+            + minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3) * t60;
+        let t236 = (1.0 - minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3) * t60;
+        let t241 = (minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t60;
+        let t246 = (minus_gproximal_wy_leg1 * minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1) * t60;
+        let t250 = (minus_gproximal_wz_leg2
+            + minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2) * t60;
+        let t255 = (1.0 - minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2) * t60;
+        let t258 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t259 = c_distal_leg1 * actuator_velocities[0];
+        let t260 = minus_rate_distal_leg1 * t259;
+        let t261 = t258 + t260;
+        let rate_dot_wrist_leg1 = t38
+            * (c_proximal_leg1 * t186 + s_proximal_leg1 * t184 + t128);
+        let t267 = t261 + rate_dot_wrist_leg1;
+        let t268 = t267 - t204;
+        let t270 = t209 * t203;
+        let t271 = t195 + t270;
+        let t274 = t198 * t198;
+        let t275 = t209 * t209;
+        let t276 = t274 - t275;
+        let t278 = t46 * t268 + minus_s_distal_leg1 * t271 + t42 * t276;
+        let t284 = t19 * t268 + t33 * t271 + minus_s_distal_leg2 * t276;
+        let t291 = minus_s_distal_leg3 * t268 + t53 * t271 + t5 * t276;
+        let t308 = t42 * t190 + minus_s_distal_leg2 * t186 + t5 * t184;
+        let t309 = t308 + t210;
+        let t311 = t203 * t203;
+        let t312 = t311 - t274;
+        let t315 = t195 - t270;
+        let t317 = t46 * t309 + minus_s_distal_leg1 * t312 + t42 * t315;
+        let t323 = t19 * t309 + t33 * t312 + minus_s_distal_leg2 * t315;
+        let t330 = minus_s_distal_leg3 * t309 + t53 * t312 + t5 * t315;
+        let t344 = t46 * t270;
+        let t346 = minus_s_distal_leg1 * t267 - t344 + t211;
+        let t349 = t19 * t270;
+        let t351 = t33 * t267 - t349 + t218;
+        let t355 = minus_s_distal_leg3 * t270;
+        let t357 = t53 * t267 - t355 + t226;
+        let t370 = t275 - t311;
+        let t372 = t308 - t210;
+        let t375 = t267 + t204;
+        let t377 = t46 * t370 + minus_s_distal_leg1 * t372 + t42 * t375;
+        let t383 = t19 * t370 + t33 * t372 + minus_s_distal_leg2 * t375;
+        let t390 = minus_s_distal_leg3 * t370 + t53 * t372 + t5 * t375;
+        let t405 = t344 - t205 + t42 * t308;
+        let t409 = t349 - t216 + minus_s_distal_leg2 * t308;
+        let t414 = t355 - t224 + t5 * t308;
+        let t427 = 9.81 * t19;
+        let t429 = 9.81 * t46;
+        let t438 = 9.81 * t33;
+        let t440 = 9.81 * minus_s_distal_leg1;
+        let t449 = 9.81 * minus_s_distal_leg2;
+        let t451 = 9.81 * t42;
+        let t460 = 9.81 * c_proximal_leg1;
+        let t461 = 9.81 * s_proximal_leg2;
+        let t467 = minus_rate_distal_leg1 * t207;
+        let t468 = c_distal_leg1 * actuator_accelerations[0];
+        let t470 = t467 + t467 - t468;
+        let t474 = c_proximal_leg1 * t222 - s_proximal_leg1 * t214;
+        let t475 = t259 * t207;
+        let t480 = c_proximal_leg1 * t241 - s_proximal_leg1 * t236;
+        let t484 = c_proximal_leg1 * t255 - s_proximal_leg1 * t250;
+        let t488 = c_proximal_leg2 * t61 - s_proximal_leg2 * t222;
+        let t489 = c_distal_leg2 * actuator_velocities[1];
+        let t490 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t491 = t489 * t490;
+        let t493 = minus_rate_distal_leg2 * t490;
+        let t494 = c_distal_leg2 * actuator_accelerations[1];
+        let t496 = t493 + t493 - t494;
+        let t500 = c_proximal_leg2 * t232 - s_proximal_leg2 * t241;
+        let t505 = c_proximal_leg2 * t246 - s_proximal_leg2 * t255;
+        let t509 = c_proximal_leg3 * t214 - s_proximal_leg3 * t61;
+        let t510 = c_distal_leg3 * actuator_velocities[2];
+        let t511 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t512 = t510 * t511;
+        let t516 = c_proximal_leg3 * t236 - s_proximal_leg3 * t232;
+        let t518 = rate_distal_leg3 * t511;
+        let t519 = c_distal_leg3 * actuator_accelerations[2];
+        let t521 = t518 + t519 + t518;
+        let t525 = c_proximal_leg3 * t250 - s_proximal_leg3 * t246;
+        let t532 = t259 * t259;
+        let t533 = t207 * t207;
+        let t534 = t532 - t533;
+        let t539 = t489 * t489;
+        let t540 = t490 * t490;
+        let t541 = t539 - t540;
+        let t543 = minus_rate_distal_leg2 * t489;
+        let t544 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t553 = t510 * t510;
+        let t554 = t511 * t511;
+        let t555 = t553 - t554;
+        let t559 = rate_distal_leg3 * t510;
+        let t560 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t121;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t186
+            - c_proximal_leg1 * t184 + minus_rate_dot_distal_leg1;
+        let t574 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t139;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t184
+            - c_proximal_leg2 * t190 + minus_rate_dot_distal_leg2;
+        let t590 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t159;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t186 - s_proximal_leg3 * t190
             - minus_rate_dot_distal_leg3;
-        let t640 = rate_distal_leg3 * rate_distal_leg3;
+        let t606 = rate_distal_leg3 * rate_distal_leg3;
+        let t640 = 9.81 * t53;
+        let t645 = 9.81 * t5;
+        let t651 = 9.81 * minus_s_distal_leg3;
         Ok([
             [
-                t73 * t230 + t232 * t237 + t240 * t245, t73 * t296 + t232 * t302 + t240 * t309,
-                t73 * t340 + t232 * t346 + t240 * t353, t73 * t369 + t232 * t374 + t240 * t380,
-                t73 * t400 + t232 * t406 + t240 * t413, t73 * t428 + t232 * t432 + t240 * t437,
-                t73 * t454 + t232 * t458, t73 * t470 + t232 * t474, t73 * t485 + t232 * t489,
-                actuator_accelerations[0], 0.0, 0.0, -(9.81 * c_proximal_leg1), 0.0,
-                9.81 * s_proximal_leg1, 0.0, actuator_velocities[0], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                -(c_distal_leg1 * t507 + minus_s_distal_leg1 * t281 + t513 * t514), -(t527 * t528),
-                -(t547 * t548),
-                c_distal_leg1 * (t281 + t282) - minus_s_distal_leg1 * (t505 + t507)
-                    + t513 * t572,
-                t527 * t579,
-                t547 * t591,
-                -(c_distal_leg1 * (t514 - minus_rate_dot_distal_leg1_2)
-                    + minus_s_distal_leg1 * (t608 - t570) + t513 * t506),
-                -(t527 * t531),
-                -(t547 * t554),
-                minus_s_distal_leg1 * (t514 + minus_rate_dot_distal_leg1_2)
-                    - c_distal_leg1 * (t571 - t608) - t513 * t279,
-                -(t527 * t322),
-                -(t547 * t212),
-                9.81 * (minus_s_distal_leg1 * c_proximal_leg1) - t513 * t450,
-                -(t527 * t452),
-                -(t547 * t468),
+                t61 * t212 + t214 * t219 + t222 * t227, t61 * t278 + t214 * t284 + t222 * t291,
+                t61 * t317 + t214 * t323 + t222 * t330, t61 * t346 + t214 * t351 + t222 * t357,
+                t61 * t377 + t214 * t383 + t222 * t390, t61 * t405 + t214 * t409 + t222 * t414,
+                t61 * t427 - t214 * t429, t61 * t438 - t214 * t440, t61 * t449 - t214 * t451,
+                actuator_accelerations[0], 0.0, 0.0, -t460, 0.0, 9.81 * s_proximal_leg1, 0.0,
+                actuator_velocities[0], 0.0, 0.0, ::overact::math::sign(actuator_velocities[0]),
+                0.0, 0.0, 1.0, 0.0, 0.0, -(c_distal_leg1 * t470 + t474 * t475), -(t488 * t491),
+                -(t509 * t512),
+                c_distal_leg1 * (t260 + t261) - minus_s_distal_leg1 * t470 + t474 * t534,
+                t488 * t541, t509 * t555,
+                -(c_distal_leg1 * (t475 - minus_rate_dot_distal_leg1_2)
+                    + minus_s_distal_leg1 * (t574 - t532) + t474 * t468),
+                -(t488 * t494),
+                -(t509 * t519),
+                minus_s_distal_leg1 * (t475 + minus_rate_dot_distal_leg1_2)
+                    - c_distal_leg1 * (t533 - t574) - t474 * t258,
+                -(t488 * t544),
+                -(t509 * t560),
+                minus_s_distal_leg1 * t460 - t474 * t640,
+                -(t488 * t645),
+                -(t509 * t651),
             ],
             [
-                t250 * t230 + t254 * t237 + t259 * t245, t250 * t296 + t254 * t302 + t259 * t309,
-                t250 * t340 + t254 * t346 + t259 * t353, t250 * t369 + t254 * t374 + t259 * t380,
-                t250 * t400 + t254 * t406 + t259 * t413, t250 * t428 + t254 * t432 + t259 * t437,
-                t250 * t454 + t254 * t458, t250 * t470 + t254 * t474, t250 * t485 + t254 * t489,
-                0.0, actuator_accelerations[1], 0.0, 0.0, 9.81 * s_proximal_leg2, 0.0,
-                9.81 * c_proximal_leg2, 0.0, actuator_velocities[1], 0.0, 0.0,
-                ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0, -(t519 * t514),
-                -(c_distal_leg2 * t532 + minus_s_distal_leg2 * t324 + t538 * t528), -(t552 * t548),
-                t519 * t572,
-                c_distal_leg2 * (t324 + t325) - minus_s_distal_leg2 * (t530 + t532)
-                    + t538 * t579,
-                t552 * t591,
-                -(t519 * t506),
-                -(c_distal_leg2 * (t528 - minus_rate_dot_distal_leg2_2)
-                    + minus_s_distal_leg2 * (t624 - t577) + t538 * t531),
-                -(t552 * t554),
-                -(t519 * t279),
-                minus_s_distal_leg2 * (t528 + minus_rate_dot_distal_leg2_2)
-                    - c_distal_leg2 * (t578 - t624) - t538 * t322,
-                -(t552 * t212),
-                -(t519 * t450),
-                -(9.81 * (minus_s_distal_leg2 * s_proximal_leg2) + t538 * t452),
-                -(t552 * t468),
+                t232 * t212 + t236 * t219 + t241 * t227, t232 * t278 + t236 * t284 + t241 * t291,
+                t232 * t317 + t236 * t323 + t241 * t330, t232 * t346 + t236 * t351 + t241 * t357,
+                t232 * t377 + t236 * t383 + t241 * t390, t232 * t405 + t236 * t409 + t241 * t414,
+                t232 * t427 - t236 * t429, t232 * t438 - t236 * t440, t232 * t449 - t236 * t451,
+                0.0, actuator_accelerations[1], 0.0, 0.0, t461, 0.0, 9.81 * c_proximal_leg2, 0.0,
+                actuator_velocities[1], 0.0, 0.0, ::overact::math::sign(actuator_velocities[1]),
+                0.0, 0.0, 1.0, 0.0, -(t480 * t475), -(c_distal_leg2 * t496 + t500 * t491),
+                -(t516 * t512), t480 * t534,
+                c_distal_leg2 * (t543 + t544 + t543) - minus_s_distal_leg2 * t496
+                    + t500 * t541,
+                t516 * t555,
+                -(t480 * t468),
+                -(c_distal_leg2 * (t491 - minus_rate_dot_distal_leg2_2)
+                    + minus_s_distal_leg2 * (t590 - t539) + t500 * t494),
+                -(t516 * t519),
+                -(t480 * t258),
+                minus_s_distal_leg2 * (t491 + minus_rate_dot_distal_leg2_2)
+                    - c_distal_leg2 * (t540 - t590) - t500 * t544,
+                -(t516 * t560),
+                -(t480 * t640),
+                -(minus_s_distal_leg2 * t461 + t500 * t645),
+                -(t516 * t651),
             ],
             [
-                t264 * t230 + t268 * t237 + t273 * t245, t264 * t296 + t268 * t302 + t273 * t309,
-                t264 * t340 + t268 * t346 + t273 * t353, t264 * t369 + t268 * t374 + t273 * t380,
-                t264 * t400 + t268 * t406 + t273 * t413, t264 * t428 + t268 * t432 + t273 * t437,
-                t264 * t454 + t268 * t458, t264 * t470 + t268 * t474, t264 * t485 + t268 * t489,
+                t246 * t212 + t250 * t219 + t255 * t227, t246 * t278 + t250 * t284 + t255 * t291,
+                t246 * t317 + t250 * t323 + t255 * t330, t246 * t346 + t250 * t351 + t255 * t357,
+                t246 * t377 + t250 * t383 + t255 * t390, t246 * t405 + t250 * t409 + t255 * t414,
+                t246 * t427 - t250 * t429, t246 * t438 - t250 * t440, t246 * t449 - t250 * t451,
                 0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 actuator_velocities[2], 0.0, 0.0, ::overact::math::sign(actuator_velocities[2]),
-                0.0, 0.0, 1.0, -(t523 * t514), -(t543 * t528),
-                c_distal_leg3 * t556 + minus_s_distal_leg3 * t211 - t562 * t548, t523 * t572,
-                t543 * t579,
-                minus_s_distal_leg3 * (t555 + t556) - c_distal_leg3 * (t211 + t213)
-                    + t562 * t591,
-                -(t523 * t506),
-                -(t543 * t531),
-                -(c_distal_leg3 * (t548 + rate_dot_distal_leg3)
-                    + minus_s_distal_leg3 * (t640 - t589) + t562 * t554),
-                -(t523 * t279),
-                -(t543 * t322),
-                minus_s_distal_leg3 * (t548 - rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t590 - t640) - t562 * t212,
-                -(t523 * t450),
-                -(t543 * t452),
-                -(t562 * t468),
+                0.0, 0.0, 1.0, -(t484 * t475), -(t505 * t491), c_distal_leg3 * t521 - t525 * t512,
+                t484 * t534, t505 * t541,
+                minus_s_distal_leg3 * t521 - c_distal_leg3 * (t559 + t559 - t560)
+                    + t525 * t555,
+                -(t484 * t468),
+                -(t505 * t494),
+                -(c_distal_leg3 * (t512 + rate_dot_distal_leg3)
+                    + minus_s_distal_leg3 * (t606 - t553) + t525 * t519),
+                -(t484 * t258),
+                -(t505 * t544),
+                minus_s_distal_leg3 * (t512 - rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t554 - t606) - t525 * t560,
+                -(t484 * t640),
+                -(t505 * t645),
+                -(t525 * t651),
             ],
         ])
     }
@@ -5269,7 +5107,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 68 operations (20 additions, 42 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 68 intermediates.
+    /// 59 operations (20 additions, 36 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 59 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5278,53 +5116,50 @@ impl Spherical3Rrr {
         torques: &[f64; 3],
     ) -> Result<[f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[2];
-        let t4 = pose[2] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[3] * t3;
-        let t7 = pose[0] * t0;
-        let minus_s_distal_leg2 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t10, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t5 = pose[3] * t2;
+        let t6 = pose[0] * t0;
+        let minus_s_distal_leg2 = t5 - t6;
+        let t9 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t9, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let t14 = pose[3] * t0;
-        let t15 = pose[0] * t3;
-        let s_proximal_leg2 = t13 * ((t14 + t15) * t5);
-        let t19 = minus_s_distal_leg2 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t19;
-        let t24 = 2.0 * pose[3];
-        let t25 = pose[3] * t24;
-        let t26 = 1.0 - t4 - t25;
-        let minus_s_distal_leg3 = t14 - t15;
-        let t29 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t29, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t29);
+        let t11 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = (t1 + t3) * t11;
+        let t13 = minus_s_distal_leg2 * t11;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t13;
+        let t17 = pose[2] * t2;
+        let t19 = 2.0 * pose[3];
+        let t20 = pose[3] * t19;
+        let minus_s_distal_leg3 = t1 - t3;
+        let t24 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t24, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t32 = 1.0 / (t26 * c_distal_leg3);
-        let c_proximal_leg3 = t32 * (t26 * t26);
-        let t35 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
-        let t39 = t2 - t25;
-        let t40 = pose[2] * t0;
-        let t41 = pose[0] * t24;
-        let minus_s_distal_leg1 = t40 - t41;
-        let t44 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t44, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t44);
+        let t26 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = (1.0 - t17 - t20) * t26;
+        let t28 = minus_s_distal_leg3 * t26;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t28;
+        let t33 = 1.0 - pose[1] * t0;
+        let t35 = pose[2] * t0;
+        let t36 = pose[0] * t19;
+        let minus_s_distal_leg1 = t35 - t36;
+        let t39 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t39, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t47 = 1.0 / (t39 * c_distal_leg1);
-        let c_proximal_leg1 = t47 * (t39 * t39);
-        let t50 = minus_s_distal_leg1 / c_distal_leg1;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t50;
-        let s_proximal_leg3 = t32 * (t26 * (t40 + t41));
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
-        let s_proximal_leg1 = t47 * (t39 * (t6 + t7));
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t50;
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t19;
+        let t41 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = (t33 - t20) * t41;
+        let t43 = minus_s_distal_leg1 * t41;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t43;
+        let s_proximal_leg3 = t26 * (t35 + t36);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t28;
+        let s_proximal_leg1 = t41 * (t5 + t6);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t43;
+        let c_proximal_leg2 = (t33 - t17) * t11;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
         Ok([
             torques[0] - minus_gproximal_wx_leg2 * torques[1]
                 - minus_gproximal_wx_leg3 * torques[2],
@@ -5358,7 +5193,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 543 operations (237 additions, 297 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 546 intermediates.
+    /// 609 operations (269 additions, 334 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 612 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5380,255 +5215,282 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let c_proximal_leg1 = t13 * (t5 * t5);
-        let t17 = 2.0 * pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t13 * (t5 * t20);
-        let t24 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t12 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t5 * t12;
+        let t15 = 2.0 * pose[2];
+        let t16 = pose[3] * t15;
+        let t17 = pose[0] * t0;
+        let t18 = t16 + t17;
+        let s_proximal_leg1 = t18 * t12;
+        let t21 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t30 = 1.0 / c_distal_leg1;
-        let t31 = minus_s_distal_leg1 * t30;
-        let t35 = t31 * t24;
-        let rate_proximal_leg1 = twist[0] - t35;
-        let t40 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t35 - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_proximal_leg1 = acceleration[0] - t24 * minus_rate_distal_leg1
-            - t31 * t40;
-        let t44 = 9.81 * c_proximal_leg1;
-        let t56 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t44
-            + parameters[2] * (9.81 * s_proximal_leg1)
-            + parameters[3] * rate_dot_proximal_leg1 + parameters[4] * rate_proximal_leg1
+        let t27 = minus_s_distal_leg1 * t12;
+        let t31 = t27 * t21;
+        let rate_proximal_leg1 = twist[0] - t31;
+        let t36 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t31 - minus_rate_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_proximal_leg1 = acceleration[0] - t21 * minus_rate_distal_leg1
+            - t27 * t36;
+        let t40 = 9.81 * c_proximal_leg1;
+        let t43 = 9.81 * s_proximal_leg1;
+        let t52 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t40
+            + parameters[2] * t43 + parameters[3] * rate_dot_proximal_leg1
+            + parameters[4] * rate_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t57 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t58 = minus_rate_distal_leg1 * t57;
-        let t59 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t60 = t58 - t59;
-        let t62 = c_distal_leg1 * rate_proximal_leg1;
-        let t63 = minus_rate_distal_leg1 * t62;
-        let t64 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t65 = t64 + t63;
-        let t69 = t62 * t57;
+        let t53 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t54 = minus_rate_distal_leg1 * t53;
+        let t55 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t56 = t54 - t55;
+        let t58 = c_distal_leg1 * rate_proximal_leg1;
+        let t59 = minus_rate_distal_leg1 * t58;
+        let t60 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t61 = t60 + t59;
+        let t65 = t58 * t53;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t24 * rate_proximal_leg1;
-        let t80 = t57 * t57;
-        let t81 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t84 = parameters[7] * t60 - parameters[8] * (t63 + t65)
-            + parameters[9] * (t69 - minus_rate_dot_distal_leg1) - parameters[10] * t58
-            + parameters[11] * (t80 - t81);
-        let t89 = 9.81 * t20;
-        let t97 = t62 * t62;
-        let t105 = parameters[7] * t63 + parameters[8] * (t58 + t60)
-            + parameters[9] * (t81 - t97) - parameters[10] * t65
-            - parameters[11] * (t69 + minus_rate_dot_distal_leg1);
-        let t111 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t115 = c_distal_leg1
-            * (t84 + parameters[12] * t58 + parameters[14] * t44 + parameters[15] * t89)
+            - c_proximal_leg1 * acceleration[2] + t21 * rate_proximal_leg1;
+        let t76 = t53 * t53;
+        let t77 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t80 = parameters[7] * t56 - parameters[8] * (t59 + t61)
+            + parameters[9] * (t65 - minus_rate_dot_distal_leg1) - parameters[10] * t54
+            + parameters[11] * (t76 - t77);
+        let t85 = 9.81 * t18;
+        let t93 = t58 * t58;
+        let t101 = parameters[7] * t59 + parameters[8] * (t54 + t56)
+            + parameters[9] * (t77 - t93) - parameters[10] * t61
+            - parameters[11] * (t65 + minus_rate_dot_distal_leg1);
+        let t106 = minus_s_distal_leg1 * t43;
+        let t110 = c_distal_leg1
+            * (t80 + parameters[12] * t54 + parameters[14] * t40 + parameters[15] * t85)
             + minus_s_distal_leg1
-                * (t105 - parameters[12] * t63 - parameters[13] * t44
-                    + parameters[15] * t111);
-        let t116 = t56 - t115;
-        let t117 = pose[2] * t17;
-        let t118 = t2 - t117;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t121 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t121, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t121);
+                * (t101 - parameters[12] * t59 - parameters[13] * t40
+                    + parameters[15] * t106);
+        let t111 = t52 - t110;
+        let t112 = pose[2] * t15;
+        let t113 = t2 - t112;
+        let minus_s_distal_leg2 = t16 - t17;
+        let t116 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t116, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t116);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t124 = 1.0 / (t118 * c_distal_leg2);
-        let c_proximal_leg2 = t124 * (t118 * t118);
-        let t127 = 1.0 / c_distal_leg2;
-        let t128 = minus_s_distal_leg2 * t127;
-        let t129 = pose[3] * t0;
-        let t130 = pose[0] * t17;
-        let t131 = t129 + t130;
-        let s_proximal_leg2 = t124 * (t131 * t118);
-        let t136 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
-        let t137 = t128 * t136;
-        let rate_proximal_leg2 = twist[1] - t137;
-        let t139 = c_distal_leg2 * rate_proximal_leg2;
-        let t140 = t139 * t139;
-        let t141 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t142 = t141 * t141;
-        let t145 = t139 * t141;
+        let t118 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t113 * t118;
+        let t120 = minus_s_distal_leg2 * t118;
+        let t121 = pose[3] * t0;
+        let t122 = pose[0] * t15;
+        let t123 = t121 + t122;
+        let s_proximal_leg2 = t118 * t123;
+        let t127 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t128 = t120 * t127;
+        let rate_proximal_leg2 = twist[1] - t128;
+        let t130 = c_distal_leg2 * rate_proximal_leg2;
+        let t131 = t130 * t130;
+        let t132 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t133 = t132 * t132;
+        let t136 = t130 * t132;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t159 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t137
-            - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t136 * minus_rate_distal_leg2
-            - t128 * t159;
-        let t162 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t167 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t169 = parameters[24] * (t140 - t142) - parameters[23] * t145
-            - parameters[25] * t162 + parameters[26] * t145 - parameters[27] * t167;
+        let rate_dot_proximal_leg2 = acceleration[1] - t127 * minus_rate_distal_leg2
+            - t120
+                * (s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
+                    + minus_rate_distal_leg2 * t128
+                    - minus_rate_distal_leg2 * rate_proximal_leg2);
+        let t153 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t158 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t160 = parameters[24] * (t131 - t133) - parameters[23] * t136
+            - parameters[25] * t153 + parameters[26] * t136 - parameters[27] * t158;
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t136 * rate_proximal_leg2;
-        let t177 = 9.81 * t118;
-        let t181 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t183 = t169 - parameters[28] * minus_rate_dot_distal_leg2
-            - parameters[29] * t177 - parameters[30] * t181;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t128;
-        let t187 = 9.81 * s_proximal_leg2;
-        let t199 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t187
-            + parameters[18] * (9.81 * c_proximal_leg2)
-            + parameters[19] * rate_dot_proximal_leg2
+            - c_proximal_leg2 * acceleration[0] + t127 * rate_proximal_leg2;
+        let t168 = 9.81 * t113;
+        let t171 = 9.81 * c_proximal_leg2;
+        let t172 = minus_s_distal_leg2 * t171;
+        let t174 = t160 - parameters[28] * minus_rate_dot_distal_leg2
+            - parameters[29] * t168 - parameters[30] * t172;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t120;
+        let t178 = 9.81 * s_proximal_leg2;
+        let t189 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t178
+            + parameters[18] * t171 + parameters[19] * rate_dot_proximal_leg2
             + parameters[20] * rate_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t200 = minus_rate_distal_leg2 * t141;
-        let t201 = t200 - t162;
-        let t203 = minus_rate_distal_leg2 * t139;
-        let t204 = t167 + t203;
-        let t213 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t216 = parameters[23] * t201 - parameters[24] * (t203 + t204)
-            + parameters[25] * (t145 - minus_rate_dot_distal_leg2)
-            - parameters[26] * t200 + parameters[27] * (t142 - t213);
-        let t235 = parameters[23] * t203 + parameters[24] * (t200 + t201)
-            + parameters[25] * (t213 - t140) - parameters[26] * t204
-            - parameters[27] * (t145 + minus_rate_dot_distal_leg2);
-        let t243 = c_distal_leg2
-            * (t216 + parameters[28] * t200 - parameters[30] * t187
-                + parameters[31] * t177)
+        let t190 = minus_rate_distal_leg2 * t132;
+        let t191 = t190 - t153;
+        let t193 = minus_rate_distal_leg2 * t130;
+        let t194 = t158 + t193;
+        let t203 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t206 = parameters[23] * t191 - parameters[24] * (t193 + t194)
+            + parameters[25] * (t136 - minus_rate_dot_distal_leg2)
+            - parameters[26] * t190 + parameters[27] * (t133 - t203);
+        let t225 = parameters[23] * t193 + parameters[24] * (t190 + t191)
+            + parameters[25] * (t203 - t131) - parameters[26] * t194
+            - parameters[27] * (t136 + minus_rate_dot_distal_leg2);
+        let t233 = c_distal_leg2
+            * (t206 + parameters[28] * t190 - parameters[30] * t178
+                + parameters[31] * t168)
             + minus_s_distal_leg2
-                * (t235 - parameters[28] * t203 + parameters[29] * t187
-                    + parameters[31] * t181);
-        let t244 = t199 - t243;
-        let t249 = 1.0 - t117 - t4;
-        let minus_s_distal_leg3 = t129 - t130;
-        let t252 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t252, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t252);
+                * (t225 - parameters[28] * t193 + parameters[29] * t178
+                    + parameters[31] * t172);
+        let t234 = t189 - t233;
+        let t239 = 1.0 - t112 - t4;
+        let minus_s_distal_leg3 = t121 - t122;
+        let t242 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t242, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t242);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t255 = 1.0 / (t249 * c_distal_leg3);
-        let c_proximal_leg3 = t255 * (t249 * t249);
-        let t258 = 1.0 / c_distal_leg3;
-        let t259 = minus_s_distal_leg3 * t258;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t259;
-        let t262 = t6 + t7;
-        let s_proximal_leg3 = t255 * (t249 * t262);
-        let t266 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t244 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t239 * t244;
+        let t246 = minus_s_distal_leg3 * t244;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t246;
+        let t249 = t6 + t7;
+        let t251 = t239 * twist[0] + t249 * twist[1];
+        let t252 = t244 * t251;
+        let s_proximal_leg3 = t244 * t249;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t275 = t259 * t266;
-        let rate_proximal_leg3 = twist[2] - t275;
-        let t280 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t275;
-        let rate_dot_proximal_leg3 = acceleration[2] + t266 * rate_distal_leg3
-            - t259 * t280;
-        let t291 = c_distal_leg3 * rate_proximal_leg3;
-        let t292 = rate_distal_leg3 * t291;
-        let t293 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t294 = t292 - t293;
-        let t297 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t298 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t299 = rate_distal_leg3 * t298;
-        let t300 = t297 + t299;
-        let t303 = t291 * t298;
+        let t261 = t239 * acceleration[0] + t249 * acceleration[1];
+        let t263 = t246 * t252;
+        let rate_proximal_leg3 = twist[2] - t263;
+        let rate_dot_proximal_leg3 = acceleration[2] + t252 * rate_distal_leg3
+            - t246
+                * (t244 * t261 + rate_distal_leg3 * rate_proximal_leg3
+                    - rate_distal_leg3 * t263);
+        let t279 = c_distal_leg3 * rate_proximal_leg3;
+        let t280 = rate_distal_leg3 * t279;
+        let t281 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t282 = t280 - t281;
+        let t285 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t286 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t287 = rate_distal_leg3 * t286;
+        let t288 = t285 + t287;
+        let t291 = t279 * t286;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t266 * rate_proximal_leg3;
-        let t314 = t298 * t298;
-        let t315 = rate_distal_leg3 * rate_distal_leg3;
-        let t318 = parameters[38] * (t292 + t294) - parameters[37] * t300
-            + parameters[39] * (t303 + rate_dot_distal_leg3) + parameters[40] * t299
-            + parameters[41] * (t314 - t315);
-        let t322 = t291 * t291;
-        let t334 = parameters[39] * (t315 - t322)
-            - (parameters[37] * t292 + parameters[38] * (t299 + t300))
-            + parameters[40] * t294 - parameters[41] * (t303 - rate_dot_distal_leg3);
-        let t339 = parameters[32] * rate_dot_proximal_leg3
+            - s_proximal_leg3 * acceleration[0] - t252 * rate_proximal_leg3;
+        let t302 = t286 * t286;
+        let t303 = rate_distal_leg3 * rate_distal_leg3;
+        let t306 = parameters[38] * (t280 + t282) - parameters[37] * t288
+            + parameters[39] * (t291 + rate_dot_distal_leg3) + parameters[40] * t287
+            + parameters[41] * (t302 - t303);
+        let t310 = t279 * t279;
+        let t322 = parameters[39] * (t303 - t310)
+            - (parameters[37] * t280 + parameters[38] * (t287 + t288))
+            + parameters[40] * t282 - parameters[41] * (t291 - rate_dot_distal_leg3);
+        let t327 = parameters[32] * rate_dot_proximal_leg3
             + parameters[33] * rate_dot_proximal_leg3
             + parameters[34] * rate_proximal_leg3
             + ::overact::math::signed(parameters[35], rate_proximal_leg3)
             + parameters[36]
-            - (c_distal_leg3 * (t318 - parameters[42] * t299)
-                + minus_s_distal_leg3 * (t334 + parameters[42] * t292));
-        let t350 = parameters[38] * (t322 - t314) - parameters[37] * t303
-            - parameters[39] * t297 + parameters[40] * t303 - parameters[41] * t293;
-        let t353 = 9.81 * minus_s_distal_leg3;
-        let t358 = t350 + parameters[42] * rate_dot_distal_leg3 - parameters[43] * t353
+            - (c_distal_leg3 * (t306 - parameters[42] * t287)
+                + minus_s_distal_leg3 * (t322 + parameters[42] * t280));
+        let t338 = parameters[38] * (t310 - t302) - parameters[37] * t291
+            - parameters[39] * t285 + parameters[40] * t291 - parameters[41] * t281;
+        let t346 = t338 + parameters[42] * rate_dot_distal_leg3
+            - parameters[43] * (9.81 * minus_s_distal_leg3)
             + parameters[44] * (9.81 * c_distal_leg3);
-        let rate_dot_wrist_leg3 = t258 * t280;
-        let t363 = rate_dot_wrist_leg3 - t294;
-        let rate_wrist_leg2 = t127 * t136;
-        let t366 = t141 + rate_wrist_leg2;
-        let rate_wrist_leg3 = t258 * t266;
-        let t368 = t298 + rate_wrist_leg3;
-        let t369 = t366 * t368;
-        let rate_dot_wrist_leg1 = t30 * t40;
-        let t371 = t65 + rate_dot_wrist_leg1;
-        let rate_wrist_leg1 = t30 * t24;
-        let t376 = t57 + rate_wrist_leg1;
-        let t377 = t376 * t368;
-        let rate_dot_wrist_leg2 = t127 * t159;
-        let t379 = t204 + rate_dot_wrist_leg2;
-        let t383 = t376 * t366;
-        let t386 = t376 * t376;
-        let t387 = t366 * t366;
-        let t390 = parameters[45] * t363 - parameters[46] * (t369 - t371)
-            + parameters[47] * (t377 + t379) - parameters[48] * t383
-            + parameters[49] * (t386 - t387);
-        let t396 = t390 + parameters[50] * t383 + parameters[52] * t177
-            - parameters[53] * t89;
-        let t402 = t368 * t368;
-        let t410 = parameters[45] * t369 + parameters[46] * (t383 + t363)
-            + parameters[47] * (t387 - t402) + parameters[48] * t371
-            - parameters[49] * (t377 - t379);
-        let t416 = t410 - parameters[50] * t369 - parameters[51] * t177
-            + parameters[53] * t353;
-        let t430 = parameters[46] * (t402 - t386) - parameters[45] * t377
-            - parameters[47] * (t383 - t363) + parameters[48] * t377
-            + parameters[49] * (t369 + t371);
-        let t436 = t430 + parameters[50] * t379 + parameters[51] * t89
-            - parameters[52] * t353;
-        let t439 = t116 + c_proximal_leg2 * t183 - minus_gproximal_wx_leg2 * t244
-            - (minus_gproximal_wx_leg3 * t339 + s_proximal_leg3 * t358) + t249 * t396
-            + minus_s_distal_leg1 * t416 + t131 * t436;
-        let t443 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t351 = t261 + minus_s_distal_leg3 * acceleration[2];
+        let t354 = t251 + minus_s_distal_leg3 * twist[2];
+        let t359 = t123 * twist[0] + minus_s_distal_leg2 * twist[1] + t113 * twist[2];
+        let t360 = t354 * t359;
+        let t361 = minus_s_distal_leg1 * t360;
+        let rate_wrist_leg1 = t12 * t21;
+        let t364 = t53 + rate_wrist_leg1;
+        let t365 = t364 * t354;
+        let t366 = t123 * t365;
+        let rate_dot_wrist_leg1 = t12 * t36;
+        let t370 = t61 + rate_dot_wrist_leg1;
+        let t371 = t370 - t360;
+        let t373 = t364 * t359;
+        let t374 = t351 + t373;
+        let t377 = t354 * t354;
+        let t378 = t364 * t364;
+        let t379 = t377 - t378;
+        let t383 = parameters[45] * (t239 * t351 + t361 - t366)
+            + parameters[46] * (t239 * t371 + minus_s_distal_leg1 * t374 + t123 * t379);
+        let t388 = t123 * acceleration[0] + minus_s_distal_leg2 * acceleration[1]
+            + t113 * acceleration[2];
+        let t389 = t388 + t365;
+        let t391 = t359 * t359;
+        let t392 = t391 - t377;
+        let t395 = t351 - t373;
+        let t401 = t239 * t373;
+        let t405 = t383
+            + parameters[47] * (t239 * t389 + minus_s_distal_leg1 * t392 + t123 * t395)
+            + parameters[48] * (minus_s_distal_leg1 * t370 - t401 + t366);
+        let t406 = t378 - t391;
+        let t408 = t388 - t365;
+        let t411 = t370 + t360;
+        let t420 = t405
+            + parameters[49] * (t239 * t406 + minus_s_distal_leg1 * t408 + t123 * t411)
+            + parameters[50] * (t401 - t361 + t123 * t388);
+        let t430 = t111 + c_proximal_leg2 * t174 - minus_gproximal_wx_leg2 * t234
+            - (minus_gproximal_wx_leg3 * t327 + s_proximal_leg3 * t346) + t420
+            + parameters[51] * (9.81 * t249) + parameters[52] * (9.81 * t5)
+            + parameters[53] * (9.81 * minus_s_distal_leg2);
+        let t434 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t443, 1.0, "actuators")?;
-        let t444 = 1.0 / t443;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t259;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t31;
-        let t450 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        ::overact::guard::platform(t434, 1.0, "actuators")?;
+        let t435 = 1.0 / t434;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t246;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t27;
+        let t441 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t451 = t450 * t444;
-        let t457 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t450 * t451;
-        ::overact::guard::platform(t457, 1.0, "actuators")?;
-        let t458 = 1.0 / t457;
-        let t469 = parameters[8] * (t97 - t80) - parameters[7] * t69
-            - parameters[9] * t59 + parameters[10] * t69 - parameters[11] * t64;
-        let t475 = t469 - parameters[12] * minus_rate_dot_distal_leg1
-            - parameters[13] * t89 - parameters[14] * t111;
-        let t488 = t244 - (minus_gproximal_wy_leg1 * t116 + s_proximal_leg1 * t475)
-            + c_proximal_leg3 * t358 - minus_gproximal_wy_leg3 * t339 + t262 * t396
-            + t5 * t416 + minus_s_distal_leg2 * t436;
-        let t490 = t488 - t439 * t451;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t31;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t128;
-        let t499 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t442 = t441 * t435;
+        let t448 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t441 * t442;
+        ::overact::guard::platform(t448, 1.0, "actuators")?;
+        let t449 = 1.0 / t448;
+        let t460 = parameters[8] * (t93 - t76) - parameters[7] * t65
+            - parameters[9] * t55 + parameters[10] * t65 - parameters[11] * t60;
+        let t466 = t460 - parameters[12] * minus_rate_dot_distal_leg1
+            - parameters[13] * t85 - parameters[14] * t106;
+        let t475 = t5 * t360;
+        let t477 = minus_s_distal_leg2 * t365;
+        let t486 = parameters[45] * (t249 * t351 + t475 - t477)
+            + parameters[46] * (t249 * t371 + t5 * t374 + minus_s_distal_leg2 * t379);
+        let t495 = t249 * t373;
+        let t499 = t486
+            + parameters[47] * (t249 * t389 + t5 * t392 + minus_s_distal_leg2 * t395)
+            + parameters[48] * (t5 * t370 - t495 + t477);
+        let t511 = t499
+            + parameters[49] * (t249 * t406 + t5 * t408 + minus_s_distal_leg2 * t411)
+            + parameters[50] * (t495 - t475 + minus_s_distal_leg2 * t388);
+        let t521 = t234 - (minus_gproximal_wy_leg1 * t111 + s_proximal_leg1 * t466)
+            + c_proximal_leg3 * t346 - minus_gproximal_wy_leg3 * t327 + t511
+            - parameters[51] * (9.81 * t239)
+            - parameters[52] * (9.81 * minus_s_distal_leg1)
+            - parameters[53] * (9.81 * t123);
+        let t523 = t521 - t430 * t442;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t27;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t120;
+        let t532 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t500 = t499 * t444;
-        let t502 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t450 * t500;
-        let t503 = t502 * t458;
-        let t511 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t499 * t500
-            - t502 * t503;
-        ::overact::guard::platform(t511, 1.0, "actuators")?;
-        let t525 = c_proximal_leg1 * t475 - minus_gproximal_wz_leg1 * t116
-            - (minus_gproximal_wz_leg2 * t244 + s_proximal_leg2 * t183) + t339
-            + minus_s_distal_leg3 * t396 + t20 * t416 + t118 * t436;
-        let t530 = (t525 - t439 * t500 - t503 * t490) / t511;
-        let t532 = t458 * t490 - t503 * t530;
-        let t536 = t439 * t444 - t451 * t532 - t500 * t530;
+        let t533 = t532 * t435;
+        let t535 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t441 * t533;
+        let t536 = t535 * t449;
+        let t546 = t18 * t360;
+        let t548 = t113 * t365;
+        let t557 = parameters[45] * (minus_s_distal_leg3 * t351 + t546 - t548)
+            + parameters[46] * (minus_s_distal_leg3 * t371 + t18 * t374 + t113 * t379);
+        let t566 = minus_s_distal_leg3 * t373;
+        let t570 = t557
+            + parameters[47] * (minus_s_distal_leg3 * t389 + t18 * t392 + t113 * t395)
+            + parameters[48] * (t18 * t370 - t566 + t548);
+        let t582 = t570
+            + parameters[49] * (minus_s_distal_leg3 * t406 + t18 * t408 + t113 * t411)
+            + parameters[50] * (t566 - t546 + t113 * t388);
+        let t585 = c_proximal_leg1 * t466 - minus_gproximal_wz_leg1 * t111
+            - (minus_gproximal_wz_leg2 * t234 + s_proximal_leg2 * t174) + t327 + t582
+            - t430 * t533;
+        let t595 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t532 * t533
+            - t535 * t536;
+        ::overact::guard::platform(t595, 1.0, "actuators")?;
+        let t596 = (t585 - t536 * t523) / t595;
+        let t598 = t449 * t523 - t536 * t596;
+        let t602 = t430 * t435 - t442 * t598 - t533 * t596;
         Ok([
-            t536 - minus_gproximal_wy_leg1 * t532 - minus_gproximal_wz_leg1 * t530,
-            t532 - minus_gproximal_wx_leg2 * t536 - minus_gproximal_wz_leg2 * t530,
-            t530 - (minus_gproximal_wx_leg3 * t536 + minus_gproximal_wy_leg3 * t532),
+            t602 - minus_gproximal_wy_leg1 * t598 - minus_gproximal_wz_leg1 * t596,
+            t598 - minus_gproximal_wx_leg2 * t602 - minus_gproximal_wz_leg2 * t596,
+            t596 - (minus_gproximal_wx_leg3 * t602 + minus_gproximal_wy_leg3 * t598),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5642,7 +5504,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 535 operations (240 additions, 289 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 547 intermediates.
+    /// 604 operations (270 additions, 328 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 616 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5822,91 +5684,111 @@ impl Spherical3Rrr {
         let t334 = t332 - t333;
         let t336 = t324 * acceleration[0] + t329 * acceleration[1]
             + t334 * acceleration[2];
-        let t342 = t324 * twist[0] + t329 * twist[1] + t334 * twist[2];
-        let t343 = t332 + t333;
-        let t345 = pose[3] * t319;
-        let t346 = pose[0] * t326;
-        let t347 = t345 - t346;
-        let t351 = 1.0 - pose[1] * t326;
-        let t352 = t351 - t320;
-        let t354 = t343 * twist[0] + t347 * twist[1] + t352 * twist[2];
-        let t355 = t342 * t354;
-        let t356 = t327 - t328;
-        let t358 = t351 - t323;
-        let t361 = t345 + t346;
-        let t363 = t356 * acceleration[0] + t358 * acceleration[1]
-            + t361 * acceleration[2];
-        let t371 = t356 * twist[0] + t358 * twist[1] + t361 * twist[2];
-        let t372 = t342 * t371;
-        let t377 = t343 * acceleration[0] + t347 * acceleration[1]
-            + t352 * acceleration[2];
-        let t381 = t371 * t354;
-        let t384 = t371 * t371;
-        let t385 = t354 * t354;
-        let t388 = parameters[45] * t336 - parameters[46] * (t355 - t363)
-            + parameters[47] * (t372 + t377) - parameters[48] * t381
-            + parameters[49] * (t384 - t385);
-        let t391 = 9.81 * t352;
-        let t394 = 9.81 * t361;
-        let t396 = t388 + parameters[50] * t381 + parameters[52] * t391
-            - parameters[53] * t394;
-        let t402 = t342 * t342;
-        let t410 = parameters[45] * t355 + parameters[46] * (t381 + t336)
-            + parameters[47] * (t385 - t402) + parameters[48] * t363
-            - parameters[49] * (t372 - t377);
-        let t415 = 9.81 * t334;
-        let t417 = t410 - parameters[50] * t355 - parameters[51] * t391
-            + parameters[53] * t415;
-        let t431 = parameters[46] * (t402 - t384) - parameters[45] * t372
-            - parameters[47] * (t381 - t336) + parameters[48] * t372
-            + parameters[49] * (t355 + t363);
-        let t437 = t431 + parameters[50] * t377 + parameters[51] * t394
-            - parameters[52] * t415;
-        let t440 = t96 + gproximal_wx_leg2 * t194 + minus_c_proximal_leg2 * t211
-            + gproximal_wx_leg3 * t296 - minus_s_proximal_leg3 * t315 + t324 * t396
-            + t356 * t417 + t343 * t437;
-        let t444 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
+        let t338 = t327 - t328;
+        let t343 = t324 * twist[0] + t329 * twist[1] + t334 * twist[2];
+        let t344 = t332 + t333;
+        let t346 = pose[3] * t319;
+        let t347 = pose[0] * t326;
+        let t348 = t346 - t347;
+        let t352 = 1.0 - pose[1] * t326;
+        let t353 = t352 - t320;
+        let t355 = t344 * twist[0] + t348 * twist[1] + t353 * twist[2];
+        let t356 = t343 * t355;
+        let t357 = t338 * t356;
+        let t360 = t352 - t323;
+        let t363 = t346 + t347;
+        let t365 = t338 * twist[0] + t360 * twist[1] + t363 * twist[2];
+        let t366 = t343 * t365;
+        let t367 = t344 * t366;
+        let t374 = t338 * acceleration[0] + t360 * acceleration[1]
+            + t363 * acceleration[2];
+        let t375 = t374 - t356;
+        let t377 = t365 * t355;
+        let t378 = t336 + t377;
+        let t381 = t343 * t343;
+        let t382 = t365 * t365;
+        let t383 = t381 - t382;
+        let t387 = parameters[45] * (t324 * t336 + t357 - t367)
+            + parameters[46] * (t324 * t375 + t338 * t378 + t344 * t383);
+        let t392 = t344 * acceleration[0] + t348 * acceleration[1]
+            + t353 * acceleration[2];
+        let t393 = t392 + t366;
+        let t395 = t355 * t355;
+        let t396 = t395 - t381;
+        let t399 = t336 - t377;
+        let t405 = t324 * t377;
+        let t409 = t387 + parameters[47] * (t324 * t393 + t338 * t396 + t344 * t399)
+            + parameters[48] * (t338 * t374 - t405 + t367);
+        let t410 = t382 - t395;
+        let t412 = t392 - t366;
+        let t415 = t374 + t356;
+        let t424 = t409 + parameters[49] * (t324 * t410 + t338 * t412 + t344 * t415)
+            + parameters[50] * (t405 - t357 + t344 * t392);
+        let t434 = t96 + gproximal_wx_leg2 * t194 + minus_c_proximal_leg2 * t211
+            + gproximal_wx_leg3 * t296 - minus_s_proximal_leg3 * t315 + t424
+            + parameters[51] * (9.81 * t329) + parameters[52] * (9.81 * t360)
+            + parameters[53] * (9.81 * t348);
+        let t438 = 1.0 + gproximal_wx_leg2 * gproximal_wx_leg2
             + gproximal_wx_leg3 * gproximal_wx_leg3;
-        ::overact::guard::platform(t444, 1.0, "actuators")?;
-        let t445 = 1.0 / t444;
+        ::overact::guard::platform(t438, 1.0, "actuators")?;
+        let t439 = 1.0 / t438;
         let gproximal_wy_leg1 = minus_c_proximal_leg1 * t12;
         let gproximal_wy_leg3 = minus_s_proximal_leg3 * t219;
-        let t451 = gproximal_wy_leg1 + gproximal_wx_leg2
+        let t445 = gproximal_wy_leg1 + gproximal_wx_leg2
             + gproximal_wx_leg3 * gproximal_wy_leg3;
-        let t452 = t451 * t445;
-        let t458 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
-            + gproximal_wy_leg3 * gproximal_wy_leg3 - t451 * t452;
-        ::overact::guard::platform(t458, 1.0, "actuators")?;
-        let t459 = 1.0 / t458;
-        let t470 = parameters[7] * t62 + parameters[8] * (t49 - t83)
+        let t446 = t445 * t439;
+        let t452 = gproximal_wy_leg1 * gproximal_wy_leg1 + 1.0
+            + gproximal_wy_leg3 * gproximal_wy_leg3 - t445 * t446;
+        ::overact::guard::platform(t452, 1.0, "actuators")?;
+        let t453 = 1.0 / t452;
+        let t464 = parameters[7] * t62 + parameters[8] * (t49 - t83)
             - parameters[9] * t43 - parameters[10] * t62 + parameters[11] * t53;
-        let t476 = t470 - parameters[12] * minus_rate_dot_distal_leg1
+        let t470 = t464 - parameters[12] * minus_rate_dot_distal_leg1
             - parameters[13] * t91 + parameters[14] * t70;
-        let t489 = gproximal_wy_leg1 * t96 - minus_s_proximal_leg1 * t476 + t194
-            + gproximal_wy_leg3 * t296 + minus_c_proximal_leg3 * t315 + t329 * t396
-            + t358 * t417 + t347 * t437;
-        let t491 = t489 - t440 * t452;
+        let t479 = t360 * t356;
+        let t481 = t348 * t366;
+        let t490 = parameters[45] * (t329 * t336 + t479 - t481)
+            + parameters[46] * (t329 * t375 + t360 * t378 + t348 * t383);
+        let t499 = t329 * t377;
+        let t503 = t490 + parameters[47] * (t329 * t393 + t360 * t396 + t348 * t399)
+            + parameters[48] * (t360 * t374 - t499 + t481);
+        let t515 = t503 + parameters[49] * (t329 * t410 + t360 * t412 + t348 * t415)
+            + parameters[50] * (t499 - t479 + t348 * t392);
+        let t525 = gproximal_wy_leg1 * t96 - minus_s_proximal_leg1 * t470 + t194
+            + gproximal_wy_leg3 * t296 + minus_c_proximal_leg3 * t315 + t515
+            - parameters[51] * (9.81 * t324) - parameters[52] * (9.81 * t338)
+            - parameters[53] * (9.81 * t344);
+        let t527 = t525 - t434 * t446;
         let gproximal_wz_leg1 = minus_s_proximal_leg1 * t12;
         let gproximal_wz_leg2 = minus_c_proximal_leg2 * t101;
-        let t500 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
+        let t536 = gproximal_wz_leg1 + gproximal_wx_leg2 * gproximal_wz_leg2
             + gproximal_wx_leg3;
-        let t501 = t500 * t445;
-        let t503 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
-            + gproximal_wy_leg3 - t451 * t501;
-        let t504 = t503 * t459;
-        let t512 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t500 * t501 - t503 * t504;
-        ::overact::guard::platform(t512, 1.0, "actuators")?;
-        let t526 = gproximal_wz_leg1 * t96 + minus_c_proximal_leg1 * t476
-            + gproximal_wz_leg2 * t194 - minus_s_proximal_leg2 * t211 + t296
-            + t334 * t396 + t361 * t417 + t352 * t437;
-        let t531 = (t526 - t440 * t501 - t504 * t491) / t512;
-        let t533 = t459 * t491 - t504 * t531;
-        let t537 = t440 * t445 - t452 * t533 - t501 * t531;
+        let t537 = t536 * t439;
+        let t539 = gproximal_wy_leg1 * gproximal_wz_leg1 + gproximal_wz_leg2
+            + gproximal_wy_leg3 - t445 * t537;
+        let t540 = t539 * t453;
+        let t550 = t363 * t356;
+        let t552 = t353 * t366;
+        let t561 = parameters[45] * (t334 * t336 + t550 - t552)
+            + parameters[46] * (t334 * t375 + t363 * t378 + t353 * t383);
+        let t570 = t334 * t377;
+        let t574 = t561 + parameters[47] * (t334 * t393 + t363 * t396 + t353 * t399)
+            + parameters[48] * (t363 * t374 - t570 + t552);
+        let t586 = t574 + parameters[49] * (t334 * t410 + t363 * t412 + t353 * t415)
+            + parameters[50] * (t570 - t550 + t353 * t392);
+        let t589 = gproximal_wz_leg1 * t96 + minus_c_proximal_leg1 * t470
+            + gproximal_wz_leg2 * t194 - minus_s_proximal_leg2 * t211 + t296 + t586
+            - t434 * t537;
+        let t599 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + gproximal_wz_leg2 * gproximal_wz_leg2 + 1.0 - t536 * t537 - t539 * t540;
+        ::overact::guard::platform(t599, 1.0, "actuators")?;
+        let t600 = (t589 - t540 * t527) / t599;
+        let t602 = t453 * t527 - t540 * t600;
+        let t606 = t434 * t439 - t446 * t602 - t537 * t600;
         Ok([
-            t537 + gproximal_wy_leg1 * t533 + gproximal_wz_leg1 * t531,
-            gproximal_wx_leg2 * t537 + t533 + gproximal_wz_leg2 * t531,
-            gproximal_wx_leg3 * t537 + gproximal_wy_leg3 * t533 + t531,
+            t606 + gproximal_wy_leg1 * t602 + gproximal_wz_leg1 * t600,
+            gproximal_wx_leg2 * t606 + t602 + gproximal_wz_leg2 * t600,
+            gproximal_wx_leg3 * t606 + gproximal_wy_leg3 * t602 + t600,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5920,7 +5802,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 595 operations (258 additions, 328 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 598 intermediates.
+    /// 649 operations (286 additions, 357 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 652 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5933,295 +5815,318 @@ impl Spherical3Rrr {
     ) -> Result<[f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[2];
-        let t4 = pose[2] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[3] * t3;
-        let t7 = pose[0] * t0;
-        let minus_s_distal_leg2 = t6 - t7;
-        let t10 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t10, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t10);
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = pose[3] * t2;
+        let t6 = pose[0] * t0;
+        let minus_s_distal_leg2 = t5 - t6;
+        let t9 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t9, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t13 = 1.0 / (t5 * c_distal_leg2);
-        let t14 = pose[3] * t0;
-        let t15 = pose[0] * t3;
-        let t16 = t14 + t15;
-        let s_proximal_leg2 = t13 * (t16 * t5);
-        let t19 = 1.0 / c_distal_leg2;
-        let t20 = minus_s_distal_leg2 * t19;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t20;
-        let t25 = 2.0 * pose[3];
-        let t26 = pose[3] * t25;
-        let t27 = 1.0 - t4 - t26;
-        let minus_s_distal_leg3 = t14 - t15;
-        let t30 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t30, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t30);
+        let t11 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t4 * t11;
+        let t13 = minus_s_distal_leg2 * t11;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t13;
+        let t17 = pose[2] * t2;
+        let t19 = 2.0 * pose[3];
+        let t20 = pose[3] * t19;
+        let t21 = 1.0 - t17 - t20;
+        let minus_s_distal_leg3 = t1 - t3;
+        let t24 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t24, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t24);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t33 = 1.0 / (t27 * c_distal_leg3);
-        let c_proximal_leg3 = t33 * (t27 * t27);
-        let t36 = 1.0 / c_distal_leg3;
-        let t37 = minus_s_distal_leg3 * t36;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t37;
-        let t40 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t26 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t21 * t26;
+        let t28 = minus_s_distal_leg3 * t26;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t28;
+        let t31 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t40, 1.0, "actuators")?;
-        ::overact::guard::platform(t40, 1.0, "actuators")?;
-        ::overact::guard::platform(t40, 1.0, "actuators")?;
-        let t41 = 1.0 / t40;
-        let t43 = t2 - t26;
-        let t44 = pose[2] * t0;
-        let t45 = pose[0] * t25;
-        let minus_s_distal_leg1 = t44 - t45;
-        let t48 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t48, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t48);
+        ::overact::guard::platform(t31, 1.0, "actuators")?;
+        ::overact::guard::platform(t31, 1.0, "actuators")?;
+        ::overact::guard::platform(t31, 1.0, "actuators")?;
+        let t32 = 1.0 / t31;
+        let t35 = 1.0 - pose[1] * t0;
+        let t36 = t35 - t20;
+        let t37 = pose[2] * t0;
+        let t38 = pose[0] * t19;
+        let minus_s_distal_leg1 = t37 - t38;
+        let t41 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t41, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t41);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t51 = 1.0 / (t43 * c_distal_leg1);
-        let c_proximal_leg1 = t51 * (t43 * t43);
-        let t54 = 9.81 * c_proximal_leg1;
-        let t57 = t6 + t7;
-        let s_proximal_leg1 = t51 * (t43 * t57);
-        let t69 = actuator_accelerations[0] * parameters[0] - t54 * parameters[1]
-            + 9.81 * s_proximal_leg1 * parameters[2]
-            + actuator_accelerations[0] * parameters[3]
+        let t43 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t36 * t43;
+        let t45 = 9.81 * c_proximal_leg1;
+        let t48 = t5 + t6;
+        let s_proximal_leg1 = t48 * t43;
+        let t50 = 9.81 * s_proximal_leg1;
+        let t59 = actuator_accelerations[0] * parameters[0] - t45 * parameters[1]
+            + t50 * parameters[2] + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t70 = 1.0 / c_distal_leg1;
-        let t71 = minus_s_distal_leg1 * t70;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t71;
-        let t75 = t44 + t45;
-        let s_proximal_leg3 = t33 * (t27 * t75);
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t37;
-        let t83 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t60 = minus_s_distal_leg1 * t43;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t60;
+        let t64 = t37 + t38;
+        let s_proximal_leg3 = t26 * t64;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t28;
+        let t71 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t84 = t83 * t41;
-        let t86 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t83 * t84;
-        ::overact::guard::platform(t86, 1.0, "actuators")?;
-        ::overact::guard::platform(t86, 1.0, "actuators")?;
-        ::overact::guard::platform(t86, 1.0, "actuators")?;
-        let t87 = 1.0 / t86;
-        let t95 = actuator_velocities[0]
+        let t72 = t71 * t32;
+        let t74 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t71 * t72;
+        ::overact::guard::platform(t74, 1.0, "actuators")?;
+        ::overact::guard::platform(t74, 1.0, "actuators")?;
+        ::overact::guard::platform(t74, 1.0, "actuators")?;
+        let t75 = 1.0 / t74;
+        let t83 = actuator_velocities[0]
             - minus_gproximal_wx_leg2 * actuator_velocities[1]
             - minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t97 = actuator_velocities[1]
+        let t85 = actuator_velocities[1]
             - minus_gproximal_wy_leg1 * actuator_velocities[0]
-            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t95 * t84;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t71;
-        let c_proximal_leg2 = t13 * (t5 * t5);
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t20;
-        let t108 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+            - minus_gproximal_wy_leg3 * actuator_velocities[2] - t83 * t72;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t60;
+        let t89 = t35 - t17;
+        let c_proximal_leg2 = t89 * t11;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
+        let t96 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t109 = t108 * t41;
-        let t111 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t83 * t109;
-        let t112 = t111 * t87;
-        let t120 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t108 * t109
-            - t111 * t112;
-        ::overact::guard::platform(t120, 1.0, "actuators")?;
-        ::overact::guard::platform(t120, 1.0, "actuators")?;
-        ::overact::guard::platform(t120, 1.0, "actuators")?;
-        let t121 = 1.0 / t120;
-        let t130 = t121
+        let t97 = t96 * t32;
+        let t99 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t71 * t97;
+        let t100 = t99 * t75;
+        let t108 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t96 * t97
+            - t99 * t100;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        ::overact::guard::platform(t108, 1.0, "actuators")?;
+        let t109 = 1.0 / t108;
+        let t118 = t109
             * (actuator_velocities[2]
                 - (minus_gproximal_wz_leg1 * actuator_velocities[0]
-                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t95 * t109
-                - t112 * t97);
-        let t132 = t87 * t97 - t112 * t130;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t132 - c_proximal_leg1 * t130;
-        let t136 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t137 = minus_rate_distal_leg1 * t136;
-        let t138 = c_distal_leg1 * actuator_accelerations[0];
-        let t139 = t137 - t138;
-        let t141 = c_distal_leg1 * actuator_velocities[0];
-        let t142 = minus_rate_distal_leg1 * t141;
-        let t143 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t144 = t143 + t142;
-        let t148 = t141 * t136;
-        let t154 = t95 * t41 - t84 * t132 - t109 * t130;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t130 - c_proximal_leg2 * t154;
-        let t159 = s_proximal_leg2 * t154 + c_proximal_leg2 * t130;
-        let t163 = minus_rate_distal_leg2 * (t20 * t159)
-            - actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t20 * t163 + t159 * minus_rate_distal_leg2;
-        let t167 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t170 = c_proximal_leg1 * t132 + s_proximal_leg1 * t130;
-        let t174 = minus_rate_distal_leg1 * (t71 * t170)
+                    + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t83 * t97
+                - t100 * t85);
+        let t120 = t75 * t85 - t100 * t118;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t120 - c_proximal_leg1 * t118;
+        let t124 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t125 = minus_rate_distal_leg1 * t124;
+        let t126 = c_distal_leg1 * actuator_accelerations[0];
+        let t127 = t125 - t126;
+        let t129 = c_distal_leg1 * actuator_velocities[0];
+        let t130 = minus_rate_distal_leg1 * t129;
+        let t131 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t132 = t131 + t130;
+        let t136 = t129 * t124;
+        let t139 = c_proximal_leg1 * t120 + s_proximal_leg1 * t118;
+        let t140 = t60 * t139;
+        let t141 = actuator_velocities[0] + t140;
+        let t144 = s_proximal_leg2 * t141 + c_proximal_leg2 * t118;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t118 - c_proximal_leg2 * t141;
+        let t148 = t144 * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t13
+            * (t13 * t148 - actuator_velocities[1] * minus_rate_distal_leg2) + t148;
+        let t154 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t157 = minus_rate_distal_leg1 * t140
             - actuator_velocities[0] * minus_rate_distal_leg1;
-        let minus_rate_dot_proximal_leg1 = t71 * t174 + t170 * minus_rate_distal_leg1;
-        let t178 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let rate_distal_leg3 = c_proximal_leg3 * t132 - s_proximal_leg3 * t154;
-        let t187 = c_proximal_leg3 * t154 + s_proximal_leg3 * t132;
-        let t190 = actuator_velocities[2] * rate_distal_leg3
-            - rate_distal_leg3 * (t37 * t187);
-        let minus_rate_dot_proximal_leg3 = t37 * t190 - t187 * rate_distal_leg3;
-        let t194 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t200 = t178 - minus_gproximal_wx_leg2 * t167
-            - minus_gproximal_wx_leg3 * t194;
-        let t202 = t167 - minus_gproximal_wy_leg1 * t178 - minus_gproximal_wy_leg3 * t194
-            - t84 * t200;
-        let t212 = t121
-            * (t194 - (minus_gproximal_wz_leg1 * t178 + minus_gproximal_wz_leg2 * t167)
-                - t109 * t200 - t112 * t202);
-        let t214 = t87 * t202 - t112 * t212;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t170;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t214
-            - c_proximal_leg1 * t212 + minus_rate_dot_distal_leg1;
-        let t225 = t136 * t136;
-        let t226 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t229 = parameters[7] * t139 - parameters[8] * (t142 + t144)
-            + parameters[9] * (t148 - minus_rate_dot_distal_leg1_2)
-            - t137 * parameters[10] + parameters[11] * (t225 - t226);
-        let t234 = 9.81 * t57;
-        let t242 = t141 * t141;
-        let t250 = t142 * parameters[7] + parameters[8] * (t137 + t139)
-            + parameters[9] * (t226 - t242) - parameters[10] * t144
-            - parameters[11] * (t148 + minus_rate_dot_distal_leg1_2);
-        let t256 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t260 = c_distal_leg1
-            * (t229 + t137 * parameters[12] + t54 * parameters[14]
-                + t234 * parameters[15])
+        let minus_rate_dot_proximal_leg1 = t60 * t157 + t139 * minus_rate_distal_leg1;
+        let t161 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t120 - s_proximal_leg3 * t141;
+        let t170 = t21 * t141 + t64 * t120;
+        let t171 = t26 * t170;
+        let t172 = t171 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t28
+            * (actuator_velocities[2] * rate_distal_leg3 - t28 * t172) - t172;
+        let t177 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t183 = t161 - minus_gproximal_wx_leg2 * t154
+            - minus_gproximal_wx_leg3 * t177;
+        let t185 = t154 - minus_gproximal_wy_leg1 * t161 - minus_gproximal_wy_leg3 * t177
+            - t72 * t183;
+        let t195 = t109
+            * (t177 - (minus_gproximal_wz_leg1 * t161 + minus_gproximal_wz_leg2 * t154)
+                - t97 * t183 - t100 * t185);
+        let t197 = t75 * t185 - t100 * t195;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t139;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t197
+            - c_proximal_leg1 * t195 + minus_rate_dot_distal_leg1;
+        let t208 = t124 * t124;
+        let t209 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t212 = parameters[7] * t127 - parameters[8] * (t130 + t132)
+            + parameters[9] * (t136 - minus_rate_dot_distal_leg1_2)
+            - t125 * parameters[10] + parameters[11] * (t208 - t209);
+        let t217 = 9.81 * t48;
+        let t225 = t129 * t129;
+        let t233 = t130 * parameters[7] + parameters[8] * (t125 + t127)
+            + parameters[9] * (t209 - t225) - parameters[10] * t132
+            - parameters[11] * (t136 + minus_rate_dot_distal_leg1_2);
+        let t238 = minus_s_distal_leg1 * t50;
+        let t242 = c_distal_leg1
+            * (t212 + t125 * parameters[12] + t45 * parameters[14]
+                + t217 * parameters[15])
             + minus_s_distal_leg1
-                * (t250 - t142 * parameters[12] - t54 * parameters[13]
-                    + t256 * parameters[15]);
-        let t261 = t69 - t260;
-        let t262 = c_distal_leg2 * actuator_velocities[1];
-        let t263 = t262 * t262;
-        let t264 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t265 = t264 * t264;
-        let t268 = t262 * t264;
-        let t271 = c_distal_leg2 * actuator_accelerations[1];
-        let t276 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t278 = parameters[24] * (t263 - t265) - t268 * parameters[23]
-            - parameters[25] * t271 + t268 * parameters[26] - parameters[27] * t276;
-        let t284 = t41 * t200 - t84 * t214 - t109 * t212;
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t159;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t212
-            - c_proximal_leg2 * t284 + minus_rate_dot_distal_leg2;
-        let t291 = 9.81 * t5;
-        let t295 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t297 = t278 - parameters[28] * minus_rate_dot_distal_leg2_2
-            - t291 * parameters[29] - t295 * parameters[30];
-        let t300 = 9.81 * s_proximal_leg2;
-        let t312 = actuator_accelerations[1] * parameters[16] + t300 * parameters[17]
-            + 9.81 * c_proximal_leg2 * parameters[18]
-            + actuator_accelerations[1] * parameters[19]
+                * (t233 - t130 * parameters[12] - t45 * parameters[13]
+                    + t238 * parameters[15]);
+        let t243 = t59 - t242;
+        let t244 = c_distal_leg2 * actuator_velocities[1];
+        let t245 = t244 * t244;
+        let t246 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t247 = t246 * t246;
+        let t250 = t244 * t246;
+        let t253 = c_distal_leg2 * actuator_accelerations[1];
+        let t258 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t260 = parameters[24] * (t245 - t247) - t250 * parameters[23]
+            - parameters[25] * t253 + t250 * parameters[26] - parameters[27] * t258;
+        let t266 = t32 * t183 - t72 * t197 - t97 * t195;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t144;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t195
+            - c_proximal_leg2 * t266 + minus_rate_dot_distal_leg2;
+        let t273 = 9.81 * t89;
+        let t276 = 9.81 * c_proximal_leg2;
+        let t277 = minus_s_distal_leg2 * t276;
+        let t279 = t260 - parameters[28] * minus_rate_dot_distal_leg2_2
+            - t273 * parameters[29] - t277 * parameters[30];
+        let t282 = 9.81 * s_proximal_leg2;
+        let t293 = actuator_accelerations[1] * parameters[16] + t282 * parameters[17]
+            + t276 * parameters[18] + actuator_accelerations[1] * parameters[19]
             + actuator_velocities[1] * parameters[20]
             + ::overact::math::signed(parameters[21], actuator_velocities[1])
             + parameters[22];
-        let t313 = minus_rate_distal_leg2 * t264;
-        let t314 = t313 - t271;
-        let t316 = minus_rate_distal_leg2 * t262;
-        let t317 = t276 + t316;
-        let t326 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t329 = parameters[23] * t314 - parameters[24] * (t316 + t317)
-            + parameters[25] * (t268 - minus_rate_dot_distal_leg2_2)
-            - t313 * parameters[26] + parameters[27] * (t265 - t326);
-        let t348 = t316 * parameters[23] + parameters[24] * (t313 + t314)
-            + parameters[25] * (t326 - t263) - parameters[26] * t317
-            - parameters[27] * (t268 + minus_rate_dot_distal_leg2_2);
-        let t356 = c_distal_leg2
-            * (t329 + t313 * parameters[28] - t300 * parameters[30]
-                + t291 * parameters[31])
+        let t294 = minus_rate_distal_leg2 * t246;
+        let t295 = t294 - t253;
+        let t297 = minus_rate_distal_leg2 * t244;
+        let t298 = t258 + t297;
+        let t307 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t310 = parameters[23] * t295 - parameters[24] * (t297 + t298)
+            + parameters[25] * (t250 - minus_rate_dot_distal_leg2_2)
+            - t294 * parameters[26] + parameters[27] * (t247 - t307);
+        let t329 = t297 * parameters[23] + parameters[24] * (t294 + t295)
+            + parameters[25] * (t307 - t245) - parameters[26] * t298
+            - parameters[27] * (t250 + minus_rate_dot_distal_leg2_2);
+        let t337 = c_distal_leg2
+            * (t310 + t294 * parameters[28] - t282 * parameters[30]
+                + t273 * parameters[31])
             + minus_s_distal_leg2
-                * (t348 - t316 * parameters[28] + t300 * parameters[29]
-                    + t295 * parameters[31]);
-        let t357 = t312 - t356;
-        let t369 = c_distal_leg3 * actuator_velocities[2];
-        let t370 = rate_distal_leg3 * t369;
-        let t371 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t372 = t370 - t371;
-        let t375 = c_distal_leg3 * actuator_accelerations[2];
-        let t376 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t377 = rate_distal_leg3 * t376;
-        let t378 = t375 + t377;
-        let t381 = t369 * t376;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t187;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t214 - s_proximal_leg3 * t284
+                * (t329 - t297 * parameters[28] + t282 * parameters[29]
+                    + t277 * parameters[31]);
+        let t338 = t293 - t337;
+        let t350 = c_distal_leg3 * actuator_velocities[2];
+        let t351 = rate_distal_leg3 * t350;
+        let t352 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t353 = t351 - t352;
+        let t356 = c_distal_leg3 * actuator_accelerations[2];
+        let t357 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t358 = rate_distal_leg3 * t357;
+        let t359 = t356 + t358;
+        let t362 = t350 * t357;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t171;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t197 - s_proximal_leg3 * t266
             - minus_rate_dot_distal_leg3;
-        let t392 = t376 * t376;
-        let t393 = rate_distal_leg3 * rate_distal_leg3;
-        let t396 = parameters[38] * (t370 + t372) - parameters[37] * t378
-            + parameters[39] * (t381 + rate_dot_distal_leg3) + t377 * parameters[40]
-            + parameters[41] * (t392 - t393);
-        let t400 = t369 * t369;
-        let t412 = parameters[39] * (t393 - t400)
-            - (t370 * parameters[37] + parameters[38] * (t377 + t378))
-            + parameters[40] * t372 - parameters[41] * (t381 - rate_dot_distal_leg3);
-        let t417 = actuator_accelerations[2] * parameters[32]
+        let t373 = t357 * t357;
+        let t374 = rate_distal_leg3 * rate_distal_leg3;
+        let t377 = parameters[38] * (t351 + t353) - parameters[37] * t359
+            + parameters[39] * (t362 + rate_dot_distal_leg3) + t358 * parameters[40]
+            + parameters[41] * (t373 - t374);
+        let t381 = t350 * t350;
+        let t393 = parameters[39] * (t374 - t381)
+            - (t351 * parameters[37] + parameters[38] * (t358 + t359))
+            + parameters[40] * t353 - parameters[41] * (t362 - rate_dot_distal_leg3);
+        let t398 = actuator_accelerations[2] * parameters[32]
             + actuator_accelerations[2] * parameters[33]
             + actuator_velocities[2] * parameters[34]
             + ::overact::math::signed(parameters[35], actuator_velocities[2])
             + parameters[36]
-            - (c_distal_leg3 * (t396 - t377 * parameters[42])
-                + minus_s_distal_leg3 * (t412 + t370 * parameters[42]));
-        let t428 = parameters[38] * (t400 - t392) - t381 * parameters[37]
-            - parameters[39] * t375 + t381 * parameters[40] - parameters[41] * t371;
-        let t431 = 9.81 * minus_s_distal_leg3;
-        let t436 = t428 + parameters[42] * rate_dot_distal_leg3 - t431 * parameters[43]
+            - (c_distal_leg3 * (t377 - t358 * parameters[42])
+                + minus_s_distal_leg3 * (t393 + t351 * parameters[42]));
+        let t409 = parameters[38] * (t381 - t373) - t362 * parameters[37]
+            - parameters[39] * t356 + t362 * parameters[40] - parameters[41] * t352;
+        let t417 = t409 + parameters[42] * rate_dot_distal_leg3
+            - 9.81 * minus_s_distal_leg3 * parameters[43]
             + 9.81 * c_distal_leg3 * parameters[44];
-        let rate_dot_wrist_leg3 = t36
-            * (c_proximal_leg3 * t284 + s_proximal_leg3 * t214 + t190);
-        let t445 = rate_dot_wrist_leg3 - t372;
-        let rate_wrist_leg2 = t19 * t159;
-        let t448 = t264 + rate_wrist_leg2;
-        let rate_wrist_leg3 = t36 * t187;
-        let t450 = t376 + rate_wrist_leg3;
-        let t451 = t448 * t450;
-        let rate_dot_wrist_leg1 = t70
-            * (c_proximal_leg1 * t214 + s_proximal_leg1 * t212 + t174);
-        let t457 = t144 + rate_dot_wrist_leg1;
-        let rate_wrist_leg1 = t70 * t170;
-        let t462 = t136 + rate_wrist_leg1;
-        let t463 = t462 * t450;
-        let rate_dot_wrist_leg2 = t19
-            * (s_proximal_leg2 * t284 + c_proximal_leg2 * t212 + t163);
-        let t469 = t317 + rate_dot_wrist_leg2;
-        let t473 = t462 * t448;
-        let t476 = t462 * t462;
-        let t477 = t448 * t448;
-        let t480 = parameters[45] * t445 - parameters[46] * (t451 - t457)
-            + parameters[47] * (t463 + t469) - t473 * parameters[48]
-            + parameters[49] * (t476 - t477);
-        let t486 = t480 + t473 * parameters[50] + t291 * parameters[52]
-            - t234 * parameters[53];
-        let t492 = t450 * t450;
-        let t500 = t451 * parameters[45] + parameters[46] * (t473 + t445)
-            + parameters[47] * (t477 - t492) + parameters[48] * t457
-            - parameters[49] * (t463 - t469);
-        let t506 = t500 - t451 * parameters[50] - t291 * parameters[51]
-            + t431 * parameters[53];
-        let t520 = parameters[46] * (t492 - t476) - t463 * parameters[45]
-            - parameters[47] * (t473 - t445) + t463 * parameters[48]
-            + parameters[49] * (t451 + t457);
-        let t526 = t520 + parameters[50] * t469 + t234 * parameters[51]
-            - t431 * parameters[52];
-        let t529 = t261 + c_proximal_leg2 * t297 - minus_gproximal_wx_leg2 * t357
-            - (minus_gproximal_wx_leg3 * t417 + s_proximal_leg3 * t436) + t27 * t486
-            + minus_s_distal_leg1 * t506 + t16 * t526;
-        let t541 = parameters[8] * (t242 - t225) - t148 * parameters[7]
-            - parameters[9] * t138 + t148 * parameters[10] - parameters[11] * t143;
-        let t547 = t541 - parameters[12] * minus_rate_dot_distal_leg1_2
-            - t234 * parameters[13] - t256 * parameters[14];
-        let t560 = t357 - (minus_gproximal_wy_leg1 * t261 + s_proximal_leg1 * t547)
-            + c_proximal_leg3 * t436 - minus_gproximal_wy_leg3 * t417 + t75 * t486
-            + t43 * t506 + minus_s_distal_leg2 * t526;
-        let t562 = t560 - t84 * t529;
-        let t577 = c_proximal_leg1 * t547 - minus_gproximal_wz_leg1 * t261
-            - (minus_gproximal_wz_leg2 * t357 + s_proximal_leg2 * t297) + t417
-            + minus_s_distal_leg3 * t486 + t57 * t506 + t5 * t526;
-        let t582 = t121 * (t577 - t109 * t529 - t112 * t562);
-        let t584 = t87 * t562 - t112 * t582;
-        let t588 = t41 * t529 - t84 * t584 - t109 * t582;
+        let t425 = t21 * t266 + t64 * t197 + minus_s_distal_leg3 * t195;
+        let t428 = t170 + minus_s_distal_leg3 * t118;
+        let t433 = t4 * t141 + minus_s_distal_leg2 * t120 + t89 * t118;
+        let t434 = t428 * t433;
+        let t435 = minus_s_distal_leg1 * t434;
+        let rate_wrist_leg1 = t43 * t139;
+        let t438 = t124 + rate_wrist_leg1;
+        let t439 = t438 * t428;
+        let t440 = t4 * t439;
+        let rate_dot_wrist_leg1 = t43
+            * (c_proximal_leg1 * t197 + s_proximal_leg1 * t195 + t157);
+        let t448 = t132 + rate_dot_wrist_leg1;
+        let t449 = t448 - t434;
+        let t451 = t438 * t433;
+        let t452 = t425 + t451;
+        let t455 = t428 * t428;
+        let t456 = t438 * t438;
+        let t457 = t455 - t456;
+        let t461 = parameters[45] * (t21 * t425 + t435 - t440)
+            + parameters[46] * (t21 * t449 + minus_s_distal_leg1 * t452 + t4 * t457);
+        let t466 = t4 * t266 + minus_s_distal_leg2 * t197 + t89 * t195;
+        let t467 = t466 + t439;
+        let t469 = t433 * t433;
+        let t470 = t469 - t455;
+        let t473 = t425 - t451;
+        let t479 = t21 * t451;
+        let t483 = t461
+            + parameters[47] * (t21 * t467 + minus_s_distal_leg1 * t470 + t4 * t473)
+            + parameters[48] * (minus_s_distal_leg1 * t448 - t479 + t440);
+        let t484 = t456 - t469;
+        let t486 = t466 - t439;
+        let t489 = t448 + t434;
+        let t498 = t483
+            + parameters[49] * (t21 * t484 + minus_s_distal_leg1 * t486 + t4 * t489)
+            + parameters[50] * (t479 - t435 + t4 * t466);
+        let t508 = t243 + c_proximal_leg2 * t279 - minus_gproximal_wx_leg2 * t338
+            - (minus_gproximal_wx_leg3 * t398 + s_proximal_leg3 * t417) + t498
+            + parameters[51] * (9.81 * t64) + parameters[52] * (9.81 * t36)
+            + parameters[53] * (9.81 * minus_s_distal_leg2);
+        let t520 = parameters[8] * (t225 - t208) - t136 * parameters[7]
+            - parameters[9] * t126 + t136 * parameters[10] - parameters[11] * t131;
+        let t526 = t520 - parameters[12] * minus_rate_dot_distal_leg1_2
+            - t217 * parameters[13] - t238 * parameters[14];
+        let t535 = t36 * t434;
+        let t537 = minus_s_distal_leg2 * t439;
+        let t546 = parameters[45] * (t64 * t425 + t535 - t537)
+            + parameters[46] * (t64 * t449 + t36 * t452 + minus_s_distal_leg2 * t457);
+        let t555 = t64 * t451;
+        let t559 = t546
+            + parameters[47] * (t64 * t467 + t36 * t470 + minus_s_distal_leg2 * t473)
+            + parameters[48] * (t36 * t448 - t555 + t537);
+        let t571 = t559
+            + parameters[49] * (t64 * t484 + t36 * t486 + minus_s_distal_leg2 * t489)
+            + parameters[50] * (t555 - t535 + minus_s_distal_leg2 * t466);
+        let t581 = t338 - (minus_gproximal_wy_leg1 * t243 + s_proximal_leg1 * t526)
+            + c_proximal_leg3 * t417 - minus_gproximal_wy_leg3 * t398 + t571
+            - parameters[51] * (9.81 * t21)
+            - parameters[52] * (9.81 * minus_s_distal_leg1)
+            - parameters[53] * (9.81 * t4);
+        let t583 = t581 - t72 * t508;
+        let t594 = t48 * t434;
+        let t596 = t89 * t439;
+        let t605 = parameters[45] * (minus_s_distal_leg3 * t425 + t594 - t596)
+            + parameters[46] * (minus_s_distal_leg3 * t449 + t48 * t452 + t89 * t457);
+        let t614 = minus_s_distal_leg3 * t451;
+        let t618 = t605
+            + parameters[47] * (minus_s_distal_leg3 * t467 + t48 * t470 + t89 * t473)
+            + parameters[48] * (t48 * t448 - t614 + t596);
+        let t630 = t618
+            + parameters[49] * (minus_s_distal_leg3 * t484 + t48 * t486 + t89 * t489)
+            + parameters[50] * (t614 - t594 + t89 * t466);
+        let t633 = c_proximal_leg1 * t526 - minus_gproximal_wz_leg1 * t243
+            - (minus_gproximal_wz_leg2 * t338 + s_proximal_leg2 * t279) + t398 + t630
+            - t97 * t508;
+        let t636 = t109 * (t633 - t100 * t583);
+        let t638 = t75 * t583 - t100 * t636;
+        let t642 = t32 * t508 - t72 * t638 - t97 * t636;
         Ok([
-            t588 - minus_gproximal_wy_leg1 * t584 - minus_gproximal_wz_leg1 * t582,
-            t584 - minus_gproximal_wx_leg2 * t588 - minus_gproximal_wz_leg2 * t582,
-            t582 - (minus_gproximal_wx_leg3 * t588 + minus_gproximal_wy_leg3 * t584),
+            t642 - minus_gproximal_wy_leg1 * t638 - minus_gproximal_wz_leg1 * t636,
+            t638 - minus_gproximal_wx_leg2 * t642 - minus_gproximal_wz_leg2 * t636,
+            t636 - (minus_gproximal_wx_leg3 * t642 + minus_gproximal_wy_leg3 * t638),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -6232,7 +6137,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 353 operations (140 additions, 207 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 350 intermediates.
+    /// 356 operations (131 additions, 222 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 353 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6240,20 +6145,18 @@ impl Spherical3Rrr {
         pose: &[f64; 4],
         parameters: &[f64; 54],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        let t0 = parameters[0] + parameters[3];
         let t1 = 2.0 * pose[1];
         let t2 = pose[2] * t1;
         let t3 = 2.0 * pose[3];
         let t4 = pose[0] * t3;
         let minus_s_distal_leg1 = t2 - t4;
-        let t7 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        let t6 = minus_s_distal_leg1 * minus_s_distal_leg1;
+        let t7 = 1.0 - t6;
         ::overact::guard::reach(t7, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t7);
-        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t18 = parameters[0] + parameters[3]
-            + c_distal_leg1
-                * (c_distal_leg1 * parameters[7] + minus_s_distal_leg1 * parameters[8])
-            + minus_s_distal_leg1
-                * (c_distal_leg1 * parameters[8] + minus_s_distal_leg1 * parameters[10]);
+        let t11 = c_distal_leg1 * parameters[7] + minus_s_distal_leg1 * parameters[8];
+        let t15 = c_distal_leg1 * parameters[8] + minus_s_distal_leg1 * parameters[10];
         let t20 = 1.0 - pose[1] * t1;
         let t21 = 2.0 * pose[2];
         let t22 = pose[2] * t21;
@@ -6261,172 +6164,164 @@ impl Spherical3Rrr {
         let t24 = pose[3] * t21;
         let t25 = pose[0] * t1;
         let minus_s_distal_leg2 = t24 - t25;
-        let t28 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        let t27 = minus_s_distal_leg2 * minus_s_distal_leg2;
+        let t28 = 1.0 - t27;
         ::overact::guard::reach(t28, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t28);
-        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
         let t31 = 1.0 / (t23 * c_distal_leg2);
         let t32 = pose[3] * t1;
         let t33 = pose[0] * t21;
         let t34 = t32 + t33;
-        let s_proximal_leg2 = t31 * (t34 * t23);
-        let t37 = minus_s_distal_leg2 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t37;
-        let t42 = minus_s_distal_leg2 * s_proximal_leg2;
-        let t44 = minus_s_distal_leg2 * minus_gproximal_wx_leg2;
-        let c_proximal_leg2 = t31 * (t23 * t23);
-        let t58 = c_distal_leg2
-            * (t42 * parameters[23] + parameters[24] * t44
-                + c_proximal_leg2 * parameters[25])
+        let t35 = t34 * t23;
+        let s_proximal_leg2 = t31 * t35;
+        let t37 = minus_s_distal_leg2 * t23;
+        let t38 = t31 * t37;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t38;
+        let t40 = parameters[16] + parameters[19];
+        let t44 = c_distal_leg2 * parameters[23] + minus_s_distal_leg2 * parameters[24];
+        let t46 = t23 * t23;
+        let c_proximal_leg2 = t31 * t46;
+        let t48 = c_proximal_leg2 * parameters[25];
+        let t53 = c_distal_leg2 * parameters[24] + minus_s_distal_leg2 * parameters[26];
+        let t59 = minus_gproximal_wx_leg2 * t40
+            + c_distal_leg2 * (minus_gproximal_wx_leg2 * t44 + t48)
             + minus_s_distal_leg2
-                * (t42 * parameters[24] + parameters[26] * t44
-                    + c_proximal_leg2 * parameters[27]);
-        let t59 = minus_gproximal_wx_leg2 * parameters[16]
-            + minus_gproximal_wx_leg2 * parameters[19] + t58;
-        let t70 = pose[3] * t3;
-        let t71 = 1.0 - t22 - t70;
-        let minus_s_distal_leg3 = t32 - t33;
-        let t74 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
-        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t77 = 1.0 / (t71 * c_distal_leg3);
-        let t78 = t2 + t4;
-        let s_proximal_leg3 = t77 * (t71 * t78);
-        let c_proximal_leg3 = t77 * (t71 * t71);
-        let t83 = minus_s_distal_leg3 * c_proximal_leg3;
-        let t85 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t85;
-        let t87 = minus_s_distal_leg3 * minus_gproximal_wx_leg3;
-        let t108 = c_distal_leg3
-            * (t83 * parameters[37] + parameters[38] * t87
-                - s_proximal_leg3 * parameters[39])
-            + minus_s_distal_leg3
-                * (t83 * parameters[38] + parameters[40] * t87
-                    - s_proximal_leg3 * parameters[41]);
-        let t109 = minus_gproximal_wx_leg3 * parameters[32]
-            + minus_gproximal_wx_leg3 * parameters[33] + t108;
-        let t112 = t18 + minus_gproximal_wx_leg2 * t59
+                * (minus_gproximal_wx_leg2 * t53 + c_proximal_leg2 * parameters[27]);
+        let t61 = s_proximal_leg2 * parameters[25];
+        let t70 = t0 + c_distal_leg1 * t11 + minus_s_distal_leg1 * t15
+            + minus_gproximal_wx_leg2 * t59
             + c_proximal_leg2
-                * (t42 * parameters[25] + parameters[27] * t44
-                    + c_proximal_leg2 * parameters[28])
+                * (minus_s_distal_leg2 * t61
+                    + parameters[27] * (minus_s_distal_leg2 * minus_gproximal_wx_leg2)
+                    + c_proximal_leg2 * parameters[28]);
+        let t72 = pose[3] * t3;
+        let t73 = 1.0 - t22 - t72;
+        let minus_s_distal_leg3 = t32 - t33;
+        let t75 = minus_s_distal_leg3 * minus_s_distal_leg3;
+        let t76 = 1.0 - t75;
+        ::overact::guard::reach(t76, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t76);
+        let t79 = 1.0 / (t73 * c_distal_leg3);
+        let t80 = t2 + t4;
+        let t81 = t73 * t80;
+        let s_proximal_leg3 = t79 * t81;
+        let t83 = t73 * t73;
+        let c_proximal_leg3 = t79 * t83;
+        let t85 = c_proximal_leg3 * parameters[39];
+        let t87 = t73 * minus_s_distal_leg3;
+        let t88 = t79 * t87;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t88;
+        let t96 = parameters[32] + parameters[33];
+        let t100 = c_distal_leg3 * parameters[37] + minus_s_distal_leg3 * parameters[38];
+        let t102 = s_proximal_leg3 * parameters[39];
+        let t107 = c_distal_leg3 * parameters[38] + minus_s_distal_leg3 * parameters[40];
+        let t113 = minus_gproximal_wx_leg3 * t96
+            + c_distal_leg3 * (minus_gproximal_wx_leg3 * t100 - t102)
+            + minus_s_distal_leg3
+                * (minus_gproximal_wx_leg3 * t107 - s_proximal_leg3 * parameters[41]);
+        let t116 = t70
             - (s_proximal_leg3
-                * (t83 * parameters[39] + parameters[41] * t87
+                * (minus_s_distal_leg3 * t85
+                    + parameters[41] * (minus_s_distal_leg3 * minus_gproximal_wx_leg3)
                     - s_proximal_leg3 * parameters[42])
-                - minus_gproximal_wx_leg3 * t109);
-        let t125 = t71
-            * (t71 * parameters[45] + minus_s_distal_leg1 * parameters[46]
-                + t34 * parameters[47])
+                - minus_gproximal_wx_leg3 * t113);
+        let t127 = t83 * parameters[45]
+            + parameters[46] * (2.0 * (t73 * minus_s_distal_leg1))
+            + parameters[47] * (2.0 * (t73 * t34)) + t6 * parameters[48];
+        let t136 = t20 - t72;
+        let t138 = 1.0 / (t136 * c_distal_leg1);
+        let t139 = t24 + t25;
+        let t140 = t136 * t139;
+        let s_proximal_leg1 = t138 * t140;
+        let t142 = s_proximal_leg1 * parameters[9];
+        let t143 = t136 * t136;
+        let c_proximal_leg1 = t138 * t143;
+        let t145 = minus_s_distal_leg1 * t136;
+        let t146 = t138 * t145;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t146;
+        let t157 = c_distal_leg1 * (t142 - t11 * minus_gproximal_wy_leg1)
             + minus_s_distal_leg1
-                * (t71 * parameters[46] + minus_s_distal_leg1 * parameters[48]
-                    + t34 * parameters[49]);
-        let t134 = t20 - t70;
-        let t136 = 1.0 / (t134 * c_distal_leg1);
-        let t137 = t24 + t25;
-        let s_proximal_leg1 = t136 * (t134 * t137);
-        let c_proximal_leg1 = t136 * (t134 * t134);
-        let t143 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t145 = minus_s_distal_leg1 / c_distal_leg1;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t145;
-        let t147 = minus_s_distal_leg1 * minus_gproximal_wy_leg1;
-        let t158 = c_distal_leg1
-            * (s_proximal_leg1 * parameters[9]
-                - (t143 * parameters[7] + parameters[8] * t147))
-            + minus_s_distal_leg1
-                * (s_proximal_leg1 * parameters[11]
-                    - (t143 * parameters[8] + parameters[10] * t147));
-        let t162 = t158
-            - (minus_gproximal_wy_leg1 * parameters[0]
-                + minus_gproximal_wy_leg1 * parameters[3]);
-        let t165 = minus_s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t85;
-        let t168 = minus_s_distal_leg3 * minus_gproximal_wy_leg3;
-        let t171 = c_proximal_leg3 * parameters[42] + t165 * parameters[39]
-            + parameters[41] * t168;
-        let t188 = c_distal_leg3
-            * (c_proximal_leg3 * parameters[39] + t165 * parameters[37]
-                + parameters[38] * t168)
+                * (s_proximal_leg1 * parameters[11] - t15 * minus_gproximal_wy_leg1)
+            - t0 * minus_gproximal_wy_leg1;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t88;
+        let t165 = c_proximal_leg3 * parameters[42] + minus_s_distal_leg3 * t102
+            + parameters[41] * (minus_s_distal_leg3 * minus_gproximal_wy_leg3);
+        let t176 = minus_gproximal_wy_leg3 * t96
+            + c_distal_leg3 * (t85 + minus_gproximal_wy_leg3 * t100)
             + minus_s_distal_leg3
-                * (c_proximal_leg3 * parameters[41] + t165 * parameters[38]
-                    + parameters[40] * t168);
-        let t189 = minus_gproximal_wy_leg3 * parameters[32]
-            + minus_gproximal_wy_leg3 * parameters[33] + t188;
-        let t197 = t78 * parameters[45] + t134 * parameters[46]
-            + minus_s_distal_leg2 * parameters[47];
-        let t203 = t78 * parameters[46] + t134 * parameters[48]
-            + minus_s_distal_leg2 * parameters[49];
-        let t210 = t78 * parameters[47] + t134 * parameters[49]
-            + minus_s_distal_leg2 * parameters[50];
-        let t213 = t162 - t59 - (s_proximal_leg3 * t171 - minus_gproximal_wx_leg3 * t189)
-            + t71 * t197 + minus_s_distal_leg1 * t203 + t34 * t210;
-        let t218 = minus_s_distal_leg3 * parameters[45] + t137 * parameters[46]
-            + t23 * parameters[47];
-        let t224 = minus_s_distal_leg3 * parameters[46] + t137 * parameters[48]
-            + t23 * parameters[49];
-        let t231 = minus_s_distal_leg3 * parameters[47] + t137 * parameters[49]
-            + t23 * parameters[50];
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t145;
-        let t238 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t240 = minus_s_distal_leg1 * minus_gproximal_wz_leg1;
-        let t252 = c_distal_leg1
-            * (t238 * parameters[7] + parameters[8] * t240
-                + c_proximal_leg1 * parameters[9])
+                * (c_proximal_leg3 * parameters[41] + minus_gproximal_wy_leg3 * t107);
+        let t190 = t81 * parameters[45]
+            + parameters[46] * (t73 * t136 + minus_s_distal_leg1 * t80)
+            + parameters[47] * (t73 * minus_s_distal_leg2 + t34 * t80);
+        let t200 = t190 + t145 * parameters[48]
+            + parameters[49] * (minus_s_distal_leg1 * minus_s_distal_leg2 + t34 * t136)
+            + t34 * minus_s_distal_leg2 * parameters[50];
+        let t201 = t157 - t59 - (s_proximal_leg3 * t165 - minus_gproximal_wx_leg3 * t176)
+            + t200;
+        let t212 = t87 * parameters[45]
+            + parameters[46] * (t73 * t139 + minus_s_distal_leg1 * minus_s_distal_leg3)
+            + parameters[47] * (t73 * t23 + t34 * minus_s_distal_leg3);
+        let t222 = t212 + minus_s_distal_leg1 * t139 * parameters[48]
+            + parameters[49] * (minus_s_distal_leg1 * t23 + t34 * t139)
+            + t35 * parameters[50];
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t146;
+        let t226 = c_proximal_leg1 * parameters[9];
+        let t234 = t0 * minus_gproximal_wz_leg1
+            + c_distal_leg1 * (t11 * minus_gproximal_wz_leg1 + t226)
             + minus_s_distal_leg1
-                * (t238 * parameters[8] + parameters[10] * t240
-                    + c_proximal_leg1 * parameters[11]);
-        let t253 = minus_gproximal_wz_leg1 * parameters[0]
-            + minus_gproximal_wz_leg1 * parameters[3] + t252;
-        let t255 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t37;
-        let t258 = minus_s_distal_leg2 * minus_gproximal_wz_leg2;
-        let t269 = c_distal_leg2
-            * (s_proximal_leg2 * parameters[25]
-                - (t255 * parameters[23] + parameters[24] * t258))
+                * (t15 * minus_gproximal_wz_leg1 + c_proximal_leg1 * parameters[11]);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t38;
+        let t245 = c_distal_leg2 * (t61 - minus_gproximal_wz_leg2 * t44)
             + minus_s_distal_leg2
-                * (s_proximal_leg2 * parameters[27]
-                    - (t255 * parameters[24] + parameters[26] * t258));
-        let t273 = t269
-            - (minus_gproximal_wz_leg2 * parameters[16]
-                + minus_gproximal_wz_leg2 * parameters[19]);
-        let t279 = s_proximal_leg2 * parameters[28]
-            - (t255 * parameters[25] + parameters[27] * t258);
-        let t284 = t71 * t218 + minus_s_distal_leg1 * t224 + t34 * t231
-            - (t253 + minus_gproximal_wx_leg2 * t273 + c_proximal_leg2 * t279 + t109);
-        let t303 = parameters[16] + parameters[19]
-            + c_distal_leg2
-                * (c_distal_leg2 * parameters[23] + minus_s_distal_leg2 * parameters[24])
-            + minus_s_distal_leg2
-                * (c_distal_leg2 * parameters[24]
-                    + minus_s_distal_leg2 * parameters[26]);
-        let t308 = s_proximal_leg1
+                * (s_proximal_leg2 * parameters[27] - minus_gproximal_wz_leg2 * t53)
+            - minus_gproximal_wz_leg2 * t40;
+        let t252 = s_proximal_leg2 * parameters[28]
+            - (minus_s_distal_leg2 * t48
+                + parameters[27] * (minus_s_distal_leg2 * minus_gproximal_wz_leg2));
+        let t257 = t222
+            - (t234 + minus_gproximal_wx_leg2 * t245 + c_proximal_leg2 * t252 + t113);
+        let t271 = s_proximal_leg1
             * (s_proximal_leg1 * parameters[12]
-                - (t143 * parameters[9] + parameters[11] * t147))
-            - minus_gproximal_wy_leg1 * t162 + t303 + c_proximal_leg3 * t171
-            + minus_gproximal_wy_leg3 * t189;
-        let t320 = t238 * parameters[9] + parameters[11] * t240
+                - (minus_s_distal_leg1 * t226
+                    + parameters[11] * (minus_s_distal_leg1 * minus_gproximal_wy_leg1)))
+            - minus_gproximal_wy_leg1 * t157 + t40 + c_distal_leg2 * t44
+            + minus_s_distal_leg2 * t53;
+        let t285 = t80 * t80 * parameters[45] + parameters[46] * (2.0 * (t80 * t136))
+            + parameters[47] * (2.0 * (t80 * minus_s_distal_leg2));
+        let t294 = t271 + c_proximal_leg3 * t165 + minus_gproximal_wy_leg3 * t176 + t285
+            + t143 * parameters[48]
+            + parameters[49] * (2.0 * (t136 * minus_s_distal_leg2))
+            + t27 * parameters[50];
+        let t301 = minus_s_distal_leg1 * t142
+            + parameters[11] * (minus_s_distal_leg1 * minus_gproximal_wz_leg1)
             + c_proximal_leg1 * parameters[12];
-        let t330 = minus_gproximal_wy_leg1 * t253 - s_proximal_leg1 * t320 + t273 - t189
-            + t78 * t218 + t134 * t224 + minus_s_distal_leg2 * t231;
-        let t348 = parameters[32] + parameters[33]
-            + c_distal_leg3
-                * (c_distal_leg3 * parameters[37] + minus_s_distal_leg3 * parameters[38])
-            + minus_s_distal_leg3
-                * (c_distal_leg3 * parameters[38]
-                    + minus_s_distal_leg3 * parameters[40]);
-        let t355 = s_proximal_leg2 * t279 - minus_gproximal_wz_leg2 * t273
-            + minus_gproximal_wz_leg1 * t253 + c_proximal_leg1 * t320 + t348
-            + minus_s_distal_leg3 * t218 + t137 * t224 + t23 * t231;
+        let t317 = t80 * minus_s_distal_leg3 * parameters[45]
+            + parameters[46] * (t80 * t139 + t136 * minus_s_distal_leg3)
+            + parameters[47] * (t80 * t23 + minus_s_distal_leg2 * minus_s_distal_leg3);
+        let t327 = minus_gproximal_wy_leg1 * t234 - s_proximal_leg1 * t301 + t245 - t176
+            + t317 + t140 * parameters[48]
+            + parameters[49] * (t136 * t23 + minus_s_distal_leg2 * t139)
+            + t37 * parameters[50];
+        let t339 = s_proximal_leg2 * t252 - minus_gproximal_wz_leg2 * t245
+            + minus_gproximal_wz_leg1 * t234 + c_proximal_leg1 * t301 + t96
+            + c_distal_leg3 * t100 + minus_s_distal_leg3 * t107;
+        let t351 = t75 * parameters[45]
+            + parameters[46] * (2.0 * (minus_s_distal_leg3 * t139))
+            + parameters[47] * (2.0 * (minus_s_distal_leg3 * t23))
+            + t139 * t139 * parameters[48];
         Ok([
             [
-                t112 + t125
-                    + t34
-                        * (t71 * parameters[47] + minus_s_distal_leg1 * parameters[49]
-                            + t34 * parameters[50]),
-                t213,
-                t284,
+                t116 + t127 + parameters[49] * (2.0 * (minus_s_distal_leg1 * t34))
+                    + t34 * t34 * parameters[50],
+                t201,
+                t257,
             ],
-            [t213, t308 + t78 * t197 + t134 * t203 + minus_s_distal_leg2 * t210, t330],
-            [t284, t330, t355],
+            [t201, t294, t327],
+            [
+                t257, t327,
+                t339 + t351 + parameters[49] * (2.0 * (t139 * t23))
+                    + t46 * parameters[50],
+            ],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -6438,7 +6333,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 437 operations (179 additions, 252 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 440 intermediates.
+    /// 487 operations (204 additions, 280 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 490 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6447,220 +6342,240 @@ impl Spherical3Rrr {
         twist: &[f64; 3],
         parameters: &[f64; 54],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[1];
-        let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = t2 - t4;
-        let t6 = pose[2] * t0;
-        let t7 = pose[0] * t3;
-        let minus_s_distal_leg1 = t6 - t7;
+        let t0 = 2.0 * pose[2];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[1];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = pose[2] * t2;
+        let t6 = 2.0 * pose[3];
+        let t7 = pose[0] * t6;
+        let minus_s_distal_leg1 = t5 - t7;
         let t10 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t13 = 1.0 / (t5 * c_distal_leg1);
-        let t14 = 2.0 * pose[2];
-        let t15 = pose[3] * t14;
-        let t16 = pose[0] * t0;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * (t5 * t17);
-        let t22 = 1.0 / c_distal_leg1;
-        let t23 = minus_s_distal_leg1 * t22;
-        let c_proximal_leg1 = t13 * (t5 * t5);
+        let t12 = 1.0 / c_distal_leg1;
+        let s_proximal_leg1 = t4 * t12;
+        let t14 = 9.81 * s_proximal_leg1;
+        let t16 = minus_s_distal_leg1 * t12;
+        let t19 = 1.0 - pose[1] * t2;
+        let t20 = pose[3] * t6;
+        let t21 = t19 - t20;
+        let c_proximal_leg1 = t21 * t12;
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t31 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
-        let t32 = t23 * t31;
-        let rate_proximal_leg1 = twist[0] - t32;
-        let t36 = minus_rate_distal_leg1 * t32
+        let t27 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t28 = t16 * t27;
+        let rate_proximal_leg1 = twist[0] - t28;
+        let t32 = minus_rate_distal_leg1 * t28
             - minus_rate_distal_leg1 * rate_proximal_leg1;
-        let minus_rate_dot_proximal_leg1 = t23 * t36 + t31 * minus_rate_distal_leg1;
-        let t41 = 9.81 * c_proximal_leg1;
-        let t51 = parameters[2] * (9.81 * s_proximal_leg1)
-            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t41)
+        let minus_rate_dot_proximal_leg1 = t16 * t32 + t27 * minus_rate_distal_leg1;
+        let t37 = 9.81 * c_proximal_leg1;
+        let t47 = parameters[2] * t14
+            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t37)
             + parameters[4] * rate_proximal_leg1
             - parameters[3] * minus_rate_dot_proximal_leg1
             + ::overact::math::signed(parameters[5], rate_proximal_leg1) + parameters[6];
-        let t52 = c_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t53 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t48 = c_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t49 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t50 = minus_rate_distal_leg1 * t49;
+        let t51 = t48 + t50;
+        let t53 = c_distal_leg1 * rate_proximal_leg1;
         let t54 = minus_rate_distal_leg1 * t53;
-        let t55 = t52 + t54;
-        let t57 = c_distal_leg1 * rate_proximal_leg1;
-        let t58 = minus_rate_distal_leg1 * t57;
-        let rate_dot_wrist_leg1 = t22 * t36;
-        let t63 = t57 * t53;
-        let minus_rate_dot_distal_leg1 = t31 * rate_proximal_leg1;
-        let t70 = t53 * t53;
-        let t71 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t74 = parameters[7] * t55 - parameters[8] * (t58 - rate_dot_wrist_leg1)
-            + parameters[9] * (t63 - minus_rate_dot_distal_leg1) - parameters[10] * t54
-            + parameters[11] * (t70 - t71);
-        let t79 = 9.81 * t17;
-        let t87 = t57 * t57;
-        let t95 = parameters[7] * t58 + parameters[8] * (t54 + t55)
-            + parameters[9] * (t71 - t87) + parameters[10] * rate_dot_wrist_leg1
-            - parameters[11] * (t63 + minus_rate_dot_distal_leg1);
-        let t101 = 9.81 * (minus_s_distal_leg1 * s_proximal_leg1);
-        let t105 = c_distal_leg1
-            * (t74 + parameters[12] * t54 + parameters[14] * t41 + parameters[15] * t79)
+        let rate_dot_wrist_leg1 = t12 * t32;
+        let t59 = t53 * t49;
+        let minus_rate_dot_distal_leg1 = t27 * rate_proximal_leg1;
+        let t66 = t49 * t49;
+        let t67 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t70 = parameters[7] * t51 - parameters[8] * (t54 - rate_dot_wrist_leg1)
+            + parameters[9] * (t59 - minus_rate_dot_distal_leg1) - parameters[10] * t50
+            + parameters[11] * (t66 - t67);
+        let t75 = 9.81 * t4;
+        let t83 = t53 * t53;
+        let t91 = parameters[7] * t54 + parameters[8] * (t50 + t51)
+            + parameters[9] * (t67 - t83) + parameters[10] * rate_dot_wrist_leg1
+            - parameters[11] * (t59 + minus_rate_dot_distal_leg1);
+        let t96 = minus_s_distal_leg1 * t14;
+        let t100 = c_distal_leg1
+            * (t70 + parameters[12] * t50 + parameters[14] * t37 + parameters[15] * t75)
             + minus_s_distal_leg1
-                * (t95 - parameters[12] * t58 - parameters[13] * t41
-                    + parameters[15] * t101);
-        let t106 = t51 - t105;
-        let t107 = pose[2] * t14;
-        let t108 = t2 - t107;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t111 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t111, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t111);
+                * (t91 - parameters[12] * t54 - parameters[13] * t37
+                    + parameters[15] * t96);
+        let t101 = t47 - t100;
+        let t102 = pose[2] * t0;
+        let t103 = t19 - t102;
+        let minus_s_distal_leg2 = t1 - t3;
+        let t106 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t106, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t106);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t114 = 1.0 / (t108 * c_distal_leg2);
-        let c_proximal_leg2 = t114 * (t108 * t108);
-        let t117 = 1.0 / c_distal_leg2;
-        let t118 = minus_s_distal_leg2 * t117;
-        let t119 = pose[3] * t0;
-        let t120 = pose[0] * t14;
-        let t121 = t119 + t120;
-        let s_proximal_leg2 = t114 * (t121 * t108);
-        let t126 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
-        let t127 = t118 * t126;
-        let rate_proximal_leg2 = twist[1] - t127;
-        let t129 = c_distal_leg2 * rate_proximal_leg2;
-        let t130 = t129 * t129;
-        let t131 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t132 = t131 * t131;
-        let t135 = t129 * t131;
+        let t108 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t103 * t108;
+        let t110 = minus_s_distal_leg2 * t108;
+        let t111 = pose[3] * t2;
+        let t112 = pose[0] * t0;
+        let t113 = t111 + t112;
+        let s_proximal_leg2 = t108 * t113;
+        let t117 = s_proximal_leg2 * twist[0] + c_proximal_leg2 * twist[2];
+        let t118 = t110 * t117;
+        let rate_proximal_leg2 = twist[1] - t118;
+        let t120 = c_distal_leg2 * rate_proximal_leg2;
+        let t121 = t120 * t120;
+        let t122 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t123 = t122 * t122;
+        let t126 = t120 * t122;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t143 = minus_rate_distal_leg2 * t127
+        let t134 = minus_rate_distal_leg2 * t118
             - minus_rate_distal_leg2 * rate_proximal_leg2;
-        let minus_rate_dot_proximal_leg2 = t118 * t143 + t126 * minus_rate_distal_leg2;
-        let t147 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t154 = parameters[24] * (t130 - t132) - parameters[23] * t135
-            + parameters[25] * t147 + parameters[26] * t135
+        let minus_rate_dot_proximal_leg2 = t110 * t134 + t117 * minus_rate_distal_leg2;
+        let t138 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t145 = parameters[24] * (t121 - t123) - parameters[23] * t126
+            + parameters[25] * t138 + parameters[26] * t126
             + parameters[27] * (minus_s_distal_leg2 * minus_rate_dot_proximal_leg2);
-        let minus_rate_dot_distal_leg2 = t126 * rate_proximal_leg2;
-        let t158 = 9.81 * t108;
-        let t162 = 9.81 * (minus_s_distal_leg2 * c_proximal_leg2);
-        let t164 = t154 - parameters[28] * minus_rate_dot_distal_leg2
-            - parameters[29] * t158 - parameters[30] * t162;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t118;
-        let t167 = 9.81 * s_proximal_leg2;
-        let t180 = parameters[17] * t167 - parameters[16] * minus_rate_dot_proximal_leg2
-            + parameters[18] * (9.81 * c_proximal_leg2)
-            + parameters[20] * rate_proximal_leg2
+        let minus_rate_dot_distal_leg2 = t117 * rate_proximal_leg2;
+        let t149 = 9.81 * t103;
+        let t152 = 9.81 * c_proximal_leg2;
+        let t153 = minus_s_distal_leg2 * t152;
+        let t155 = t145 - parameters[28] * minus_rate_dot_distal_leg2
+            - parameters[29] * t149 - parameters[30] * t153;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t110;
+        let t158 = 9.81 * s_proximal_leg2;
+        let t170 = parameters[17] * t158 - parameters[16] * minus_rate_dot_proximal_leg2
+            + parameters[18] * t152 + parameters[20] * rate_proximal_leg2
             - parameters[19] * minus_rate_dot_proximal_leg2
             + ::overact::math::signed(parameters[21], rate_proximal_leg2)
             + parameters[22];
-        let t181 = minus_rate_distal_leg2 * t131;
-        let t182 = t147 + t181;
-        let t184 = minus_rate_distal_leg2 * t129;
-        let rate_dot_wrist_leg2 = t117 * t143;
-        let t194 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t197 = parameters[23] * t182 - parameters[24] * (t184 - rate_dot_wrist_leg2)
-            + parameters[25] * (t135 - minus_rate_dot_distal_leg2)
-            - parameters[26] * t181 + parameters[27] * (t132 - t194);
-        let t216 = parameters[23] * t184 + parameters[24] * (t181 + t182)
-            + parameters[25] * (t194 - t130) + parameters[26] * rate_dot_wrist_leg2
-            - parameters[27] * (t135 + minus_rate_dot_distal_leg2);
-        let t224 = c_distal_leg2
-            * (t197 + parameters[28] * t181 - parameters[30] * t167
-                + parameters[31] * t158)
+        let t171 = minus_rate_distal_leg2 * t122;
+        let t172 = t138 + t171;
+        let t174 = minus_rate_distal_leg2 * t120;
+        let rate_dot_wrist_leg2 = t108 * t134;
+        let t184 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t187 = parameters[23] * t172 - parameters[24] * (t174 - rate_dot_wrist_leg2)
+            + parameters[25] * (t126 - minus_rate_dot_distal_leg2)
+            - parameters[26] * t171 + parameters[27] * (t123 - t184);
+        let t206 = parameters[23] * t174 + parameters[24] * (t171 + t172)
+            + parameters[25] * (t184 - t121) + parameters[26] * rate_dot_wrist_leg2
+            - parameters[27] * (t126 + minus_rate_dot_distal_leg2);
+        let t214 = c_distal_leg2
+            * (t187 + parameters[28] * t171 - parameters[30] * t158
+                + parameters[31] * t149)
             + minus_s_distal_leg2
-                * (t216 - parameters[28] * t184 + parameters[29] * t167
-                    + parameters[31] * t162);
-        let t225 = t180 - t224;
-        let t230 = 1.0 - t107 - t4;
-        let minus_s_distal_leg3 = t119 - t120;
-        let t233 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t233, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t233);
+                * (t206 - parameters[28] * t174 + parameters[29] * t158
+                    + parameters[31] * t153);
+        let t215 = t170 - t214;
+        let t220 = 1.0 - t102 - t20;
+        let minus_s_distal_leg3 = t111 - t112;
+        let t223 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t223, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t223);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t236 = 1.0 / (t230 * c_distal_leg3);
-        let c_proximal_leg3 = t236 * (t230 * t230);
-        let t239 = 1.0 / c_distal_leg3;
-        let t240 = minus_s_distal_leg3 * t239;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t240;
-        let t243 = t6 + t7;
-        let s_proximal_leg3 = t236 * (t230 * t243);
-        let t247 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
-        let t248 = t240 * t247;
-        let rate_proximal_leg3 = twist[2] - t248;
+        let t225 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t220 * t225;
+        let t227 = minus_s_distal_leg3 * t225;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t227;
+        let t230 = t5 + t7;
+        let t232 = t220 * twist[0] + t230 * twist[1];
+        let t233 = t225 * t232;
+        let t234 = t227 * t233;
+        let rate_proximal_leg3 = twist[2] - t234;
+        let s_proximal_leg3 = t225 * t230;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t256 = rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t248;
-        let minus_rate_dot_proximal_leg3 = t240 * t256 - t247 * rate_distal_leg3;
-        let t267 = c_distal_leg3 * minus_rate_dot_proximal_leg3;
-        let t268 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t269 = rate_distal_leg3 * t268;
-        let t270 = t267 - t269;
-        let t272 = c_distal_leg3 * rate_proximal_leg3;
-        let t273 = rate_distal_leg3 * t272;
-        let rate_dot_wrist_leg3 = t239 * t256;
-        let t278 = t272 * t268;
-        let minus_rate_dot_distal_leg3 = t247 * rate_proximal_leg3;
-        let t285 = t268 * t268;
-        let t286 = rate_distal_leg3 * rate_distal_leg3;
-        let t289 = parameters[37] * t270 + parameters[38] * (t273 + rate_dot_wrist_leg3)
-            + parameters[39] * (t278 - minus_rate_dot_distal_leg3)
-            + parameters[40] * t269 + parameters[41] * (t285 - t286);
-        let t297 = t272 * t272;
-        let t305 = parameters[38] * (t270 - t269) - parameters[37] * t273
-            + parameters[39] * (t286 - t297) + parameters[40] * rate_dot_wrist_leg3
-            - parameters[41] * (t278 + minus_rate_dot_distal_leg3);
-        let t310 = parameters[34] * rate_proximal_leg3
+        let t243 = rate_distal_leg3 * rate_proximal_leg3 - rate_distal_leg3 * t234;
+        let minus_rate_dot_proximal_leg3 = t227 * t243 - t233 * rate_distal_leg3;
+        let t254 = c_distal_leg3 * minus_rate_dot_proximal_leg3;
+        let t255 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t256 = rate_distal_leg3 * t255;
+        let t257 = t254 - t256;
+        let t259 = c_distal_leg3 * rate_proximal_leg3;
+        let t260 = rate_distal_leg3 * t259;
+        let rate_dot_wrist_leg3 = t225 * t243;
+        let t265 = t259 * t255;
+        let minus_rate_dot_distal_leg3 = t233 * rate_proximal_leg3;
+        let t272 = t255 * t255;
+        let t273 = rate_distal_leg3 * rate_distal_leg3;
+        let t276 = parameters[37] * t257 + parameters[38] * (t260 + rate_dot_wrist_leg3)
+            + parameters[39] * (t265 - minus_rate_dot_distal_leg3)
+            + parameters[40] * t256 + parameters[41] * (t272 - t273);
+        let t284 = t259 * t259;
+        let t292 = parameters[38] * (t257 - t256) - parameters[37] * t260
+            + parameters[39] * (t273 - t284) + parameters[40] * rate_dot_wrist_leg3
+            - parameters[41] * (t265 + minus_rate_dot_distal_leg3);
+        let t297 = parameters[34] * rate_proximal_leg3
             - parameters[33] * minus_rate_dot_proximal_leg3
             + ::overact::math::signed(parameters[35], rate_proximal_leg3)
             + parameters[36] - parameters[32] * minus_rate_dot_proximal_leg3
-            - (c_distal_leg3 * (t289 - parameters[42] * t269)
-                + minus_s_distal_leg3 * (t305 + parameters[42] * t273));
-        let t322 = parameters[38] * (t297 - t285) - parameters[37] * t278
-            + parameters[39] * t267 + parameters[40] * t278
+            - (c_distal_leg3 * (t276 - parameters[42] * t256)
+                + minus_s_distal_leg3 * (t292 + parameters[42] * t260));
+        let t309 = parameters[38] * (t284 - t272) - parameters[37] * t265
+            + parameters[39] * t254 + parameters[40] * t265
             + parameters[41] * (minus_s_distal_leg3 * minus_rate_dot_proximal_leg3);
-        let t325 = 9.81 * minus_s_distal_leg3;
-        let t330 = t322 - parameters[42] * minus_rate_dot_distal_leg3
-            - parameters[43] * t325 + parameters[44] * (9.81 * c_distal_leg3);
-        let rate_wrist_leg1 = t22 * t31;
-        let t335 = t53 + rate_wrist_leg1;
-        let rate_wrist_leg3 = t239 * t247;
-        let t337 = t268 + rate_wrist_leg3;
-        let t338 = t335 * t337;
-        let rate_wrist_leg2 = t117 * t126;
-        let t341 = t131 + rate_wrist_leg2;
-        let t342 = t341 * t337;
-        let t345 = t335 * t341;
-        let t348 = t335 * t335;
-        let t349 = t341 * t341;
-        let t354 = parameters[47] * t338 - parameters[46] * t342 - parameters[48] * t345
-            + parameters[49] * (t348 - t349) + parameters[50] * t345;
-        let t358 = t354 + parameters[52] * t158 - parameters[53] * t79;
-        let t363 = t337 * t337;
-        let t370 = parameters[45] * t342 + parameters[46] * t345
-            + parameters[47] * (t349 - t363) - parameters[49] * t338
-            - parameters[50] * t342;
-        let t374 = t370 - parameters[51] * t158 + parameters[53] * t325;
-        let t386 = parameters[46] * (t363 - t348) - parameters[45] * t338
-            - parameters[47] * t345 + parameters[48] * t338 + parameters[49] * t342;
-        let t390 = t386 + parameters[51] * t79 - parameters[52] * t325;
-        let t393 = t106 + c_proximal_leg2 * t164 - minus_gproximal_wx_leg2 * t225
-            - (minus_gproximal_wx_leg3 * t310 + s_proximal_leg3 * t330) + t230 * t358
-            + minus_s_distal_leg1 * t374 + t121 * t390;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t23;
-        let t406 = parameters[8] * (t87 - t70) - parameters[7] * t63
-            + parameters[9] * t52 + parameters[10] * t63
+        let t317 = t309 - parameters[42] * minus_rate_dot_distal_leg3
+            - parameters[43] * (9.81 * minus_s_distal_leg3)
+            + parameters[44] * (9.81 * c_distal_leg3);
+        let t322 = t232 + minus_s_distal_leg3 * twist[2];
+        let t327 = t113 * twist[0] + minus_s_distal_leg2 * twist[1] + t103 * twist[2];
+        let t328 = t322 * t327;
+        let t329 = minus_s_distal_leg1 * t328;
+        let rate_wrist_leg1 = t12 * t27;
+        let t331 = t49 + rate_wrist_leg1;
+        let t332 = t331 * t322;
+        let t333 = t113 * t332;
+        let t336 = t331 * t327;
+        let t340 = t322 * t322;
+        let t341 = t331 * t331;
+        let t342 = t340 - t341;
+        let t348 = t327 * t327;
+        let t349 = t348 - t340;
+        let t355 = parameters[45] * (t329 - t333)
+            + parameters[46] * (minus_s_distal_leg1 * t336 - t220 * t328 + t113 * t342)
+            + parameters[47] * (t220 * t332 + minus_s_distal_leg1 * t349 - t113 * t336);
+        let t356 = t220 * t336;
+        let t360 = t341 - t348;
+        let t367 = t355 + parameters[48] * (t333 - t356)
+            + parameters[49] * (t220 * t360 - minus_s_distal_leg1 * t332 + t113 * t328);
+        let t379 = t367 + parameters[50] * (t356 - t329) + parameters[51] * (9.81 * t230)
+            + parameters[52] * (9.81 * t21)
+            + parameters[53] * (9.81 * minus_s_distal_leg2);
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t16;
+        let t393 = parameters[8] * (t83 - t66) - parameters[7] * t59
+            + parameters[9] * t48 + parameters[10] * t59
             + parameters[11] * (minus_s_distal_leg1 * minus_rate_dot_proximal_leg1);
-        let t412 = t406 - parameters[12] * minus_rate_dot_distal_leg1
-            - parameters[13] * t79 - parameters[14] * t101;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t240;
-        let t426 = t225 - (minus_gproximal_wy_leg1 * t106 + s_proximal_leg1 * t412)
-            + c_proximal_leg3 * t330 - minus_gproximal_wy_leg3 * t310 + t243 * t358
-            + t5 * t374 + minus_s_distal_leg2 * t390;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t23;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t118;
-        let t442 = c_proximal_leg1 * t412 - minus_gproximal_wz_leg1 * t106
-            - (minus_gproximal_wz_leg2 * t225 + s_proximal_leg2 * t164) + t310
-            + minus_s_distal_leg3 * t358 + t17 * t374 + t108 * t390;
-        Ok([t393, t426, t442])
+        let t399 = t393 - parameters[12] * minus_rate_dot_distal_leg1
+            - parameters[13] * t75 - parameters[14] * t96;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t227;
+        let t408 = t21 * t328;
+        let t409 = minus_s_distal_leg2 * t332;
+        let t425 = parameters[45] * (t408 - t409)
+            + parameters[46] * (t21 * t336 - t230 * t328 + minus_s_distal_leg2 * t342)
+            + parameters[47] * (t230 * t332 + t21 * t349 - minus_s_distal_leg2 * t336);
+        let t426 = t230 * t336;
+        let t436 = t425 + parameters[48] * (t409 - t426)
+            + parameters[49] * (t230 * t360 - t21 * t332 + minus_s_distal_leg2 * t328);
+        let t448 = t436 + parameters[50] * (t426 - t408) - parameters[51] * (9.81 * t220)
+            - parameters[52] * (9.81 * minus_s_distal_leg1)
+            - parameters[53] * (9.81 * t113);
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t16;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t110;
+        let t460 = t4 * t328;
+        let t461 = t103 * t332;
+        let t477 = parameters[45] * (t460 - t461)
+            + parameters[46] * (t4 * t336 - minus_s_distal_leg3 * t328 + t103 * t342)
+            + parameters[47] * (minus_s_distal_leg3 * t332 + t4 * t349 - t103 * t336);
+        let t478 = minus_s_distal_leg3 * t336;
+        let t488 = t477 + parameters[48] * (t461 - t478)
+            + parameters[49] * (minus_s_distal_leg3 * t360 - t4 * t332 + t103 * t328);
+        let t492 = c_proximal_leg1 * t399 - minus_gproximal_wz_leg1 * t101
+            - (minus_gproximal_wz_leg2 * t215 + s_proximal_leg2 * t155) + t297 + t488
+            + parameters[50] * (t478 - t460);
+        Ok([
+            t101 + c_proximal_leg2 * t155 - minus_gproximal_wx_leg2 * t215
+                - (minus_gproximal_wx_leg3 * t297 + s_proximal_leg3 * t317) + t379,
+            t215 - (minus_gproximal_wy_leg1 * t101 + s_proximal_leg1 * t399)
+                + c_proximal_leg3 * t317 - minus_gproximal_wy_leg3 * t297 + t448,
+            t492,
+        ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///

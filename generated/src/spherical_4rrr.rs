@@ -134,8 +134,8 @@ impl Spherical4Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.49999999999638683), ("zz_distal_leg2", 0.9999999999876729),
-                    ("zz_distal_leg3", 0.49999999999730244), ("zz_distal_leg4", 0.999999999992078),
+                    ("zz_distal_leg1", 0.49999999999638695), ("zz_distal_leg2", 0.9999999999876727),
+                    ("zz_distal_leg3", 0.49999999999730244), ("zz_distal_leg4", 0.9999999999920782),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -143,16 +143,15 @@ impl Spherical4Rrr {
                 "xz_platformR",
                 "xz_platform",
                 &[
-                    ("zz_distal_leg1", 0.5000000000063525),
-                    ("zz_distal_leg3", -0.49999999999613937),
+                    ("zz_distal_leg1", 0.5000000000063525), ("zz_distal_leg3", -0.4999999999961396),
                 ],
             ),
             BaseParameter::new(
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999932565), ("zz_distal_leg2", 0.49999999999032146),
-                    ("zz_distal_leg3", 0.9999999999978916), ("zz_distal_leg4", 0.4999999999956878),
+                    ("zz_distal_leg1", 0.9999999999932571), ("zz_distal_leg2", 0.4999999999903214),
+                    ("zz_distal_leg3", 0.9999999999978917), ("zz_distal_leg4", 0.49999999999568795),
                 ],
             ),
             BaseParameter::new(
@@ -160,14 +159,14 @@ impl Spherical4Rrr {
                 "yz_platform",
                 &[
                     ("zz_distal_leg2", 0.49999999999618705),
-                    ("zz_distal_leg4", -0.49999999999380507),
+                    ("zz_distal_leg4", -0.4999999999938054),
                 ],
             ),
             BaseParameter::new(
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.4999999999967213), ("zz_distal_leg2", 0.4999999999811521),
+                    ("zz_distal_leg1", 0.49999999999672134), ("zz_distal_leg2", 0.4999999999811521),
                     ("zz_distal_leg3", 0.49999999999979156), ("zz_distal_leg4", 0.4999999999889667),
                 ],
             ),
@@ -175,22 +174,22 @@ impl Spherical4Rrr {
                 "mx_platformR",
                 "mx_platform",
                 &[
-                    ("my_distal_leg1", -0.7071067811903052), ("my_distal_leg3", 0.7071067811646612),
+                    ("my_distal_leg1", -0.7071067811903052), ("my_distal_leg3", 0.7071067811646615),
                 ],
             ),
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
                 &[
-                    ("my_distal_leg2", -0.7071067811764505), ("my_distal_leg4", 0.7071067811620884),
+                    ("my_distal_leg2", -0.7071067811764508), ("my_distal_leg4", 0.7071067811620884),
                 ],
             ),
             BaseParameter::new(
                 "mz_platformR",
                 "mz_platform",
                 &[
-                    ("my_distal_leg1", 0.7071067811824933), ("my_distal_leg2", 0.7071067811839645),
-                    ("my_distal_leg3", 0.7071067811852733), ("my_distal_leg4", 0.7071067811880266),
+                    ("my_distal_leg1", 0.7071067811824933), ("my_distal_leg2", 0.7071067811839647),
+                    ("my_distal_leg3", 0.7071067811852728), ("my_distal_leg4", 0.7071067811880266),
                 ],
             ),
             BaseParameter::new(
@@ -252,7 +251,7 @@ impl Spherical4Rrr {
             BaseParameter::new(
                 "xx_distal_leg1R",
                 "xx_distal_leg1",
-                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999906476)],
+                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999906477)],
             ),
             BaseParameter::new(
                 "xx_distal_leg2R",
@@ -262,12 +261,12 @@ impl Spherical4Rrr {
             BaseParameter::new(
                 "xx_distal_leg3R",
                 "xx_distal_leg3",
-                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999781498)],
+                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999781497)],
             ),
             BaseParameter::new(
                 "xx_distal_leg4R",
                 "xx_distal_leg4",
-                &[("yy_distal_leg4", -1.0), ("zz_distal_leg4", -0.9999999999908566)],
+                &[("yy_distal_leg4", -1.0), ("zz_distal_leg4", -0.9999999999908571)],
             ),
             BaseParameter::new("xy_distal_leg1", "xy_distal_leg1", &[]),
             BaseParameter::new("xy_distal_leg2", "xy_distal_leg2", &[]),
@@ -294,88 +293,84 @@ impl Spherical4Rrr {
     ///
     /// Output: 12.
     ///
-    /// 123 operations (43 additions, 68 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 132 intermediates.
+    /// 91 operations (39 additions, 36 multiplications, 16 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 100 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joints(pose: &[f64; 4]) -> Result<[f64; 12], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
+        let t0 = 2.0 * pose[1];
         let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t6 = 2.0 * pose[1];
-        let t7 = pose[3] * t6;
-        let t8 = pose[0] * t0;
-        let t9 = t7 + t8;
-        let t10 = t5 - t9;
-        let t11 = t7 - t8;
-        let t13 = 1.0 - pose[1] * t6;
-        let t14 = t13 - t1;
-        let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t19, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t19);
+        let t2 = 2.0 * pose[3];
+        let t3 = pose[0] * t2;
+        let t4 = t1 + t3;
+        let t5 = 2.0 * pose[2];
+        let t6 = pose[3] * t5;
+        let t7 = pose[0] * t0;
+        let t8 = t6 - t7;
+        let t10 = pose[2] * t5;
+        let t12 = pose[3] * t2;
+        let t13 = 1.0 - t10 - t12;
+        let t14 = pose[3] * t0;
+        let t15 = pose[0] * t5;
+        let t16 = t14 + t15;
+        let t17 = t13 - t16;
+        let t18 = t14 - t15;
+        let t20 = 1.0 - pose[1] * t0;
+        let t21 = t20 - t10;
+        let t23 = t17 - (t18 - t21);
+        let t26 = 0.5 * t23;
+        let minus_s_distal_leg1 = t17 - t26;
+        let t29 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t29, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t29);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t26 = pose[2] * t6;
-        let t27 = pose[0] * t3;
-        let t28 = t26 + t27;
-        let t29 = pose[3] * t0;
-        let t30 = pose[0] * t6;
-        let t31 = t29 - t30;
-        let t33 = t10 - t15;
-        let s_proximal_leg1 = t25 * (0.35355339059327373 * ((t28 - t31) * t33));
-        let c_proximal_leg1 = t25 * (0.25 * (t33 * t33));
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t44 = t26 - t27;
-        let t45 = t29 + t30;
-        let s_wrist_leg1 = 0.7071067811865475 * (t44 + t45) / c_distal_leg1;
-        let t49 = t5 + t9;
-        let t50 = t11 + t14;
-        let t51 = t49 + t50;
-        let c_wrist_leg1 = 0.5 * t51 / c_distal_leg1;
-        let t55 = t13 - t4;
-        let t56 = t55 - t31;
-        let t57 = t45 - t14;
-        let t58 = t56 + t57;
-        let t61 = 1.0 - 0.25 * (t58 * t58);
-        ::overact::guard::reach(t61, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t61);
+        let s_proximal_leg1 = 0.35355339059327373 * ((t4 - t8) * t23)
+            / (c_distal_leg1 * t26);
+        let c_proximal_leg1 = t26 / c_distal_leg1;
+        let t37 = t1 - t3;
+        let t38 = t6 + t7;
+        let s_wrist_leg1 = 0.7071067811865475 * (t37 + t38) / c_distal_leg1;
+        let t42 = t13 + t16;
+        let t44 = t42 + t18 + t21;
+        let t45 = 0.5 * t44;
+        let c_wrist_leg1 = t45 / c_distal_leg1;
+        let t49 = t20 - t12;
+        let t50 = t49 - t8;
+        let t52 = t50 - (t38 - t21);
+        let t55 = 0.5 * t52;
+        let minus_s_distal_leg2 = t50 - t55;
+        let t58 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t58, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t58);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t67 = 1.0 / (0.5 * (t56 * c_distal_leg2 - t57 * c_distal_leg2));
-        let t69 = t56 - t57;
-        let minus_s_proximal_leg2 = t67 * (0.35355339059327373 * ((t44 - t9) * t69));
-        let c_proximal_leg2 = t67 * (0.25 * (t69 * t69));
-        let minus_s_distal_leg2 = 0.5 * t58;
-        let minus_s_wrist_leg2 = 0.7071067811865475 * (t28 + t11) / c_distal_leg2;
-        let t85 = t55 + t31;
-        let t86 = t45 + t14;
-        let t87 = t85 + t86;
-        let c_wrist_leg2 = 0.5 * t87 / c_distal_leg2;
-        let t91 = t50 - t49;
-        let t94 = 1.0 - 0.25 * (t91 * t91);
-        ::overact::guard::reach(t94, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t94);
+        let minus_s_proximal_leg2 = 0.35355339059327373 * ((t37 - t16) * t52)
+            / (c_distal_leg2 * t55);
+        let c_proximal_leg2 = t55 / c_distal_leg2;
+        let minus_s_wrist_leg2 = 0.7071067811865475 * (t4 + t18) / c_distal_leg2;
+        let t71 = t49 + t8;
+        let t73 = t71 + t38 + t21;
+        let t74 = 0.5 * t73;
+        let c_wrist_leg2 = t74 / c_distal_leg2;
+        let s_distal_leg3 = t45 - t42;
+        let t82 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t82, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t82);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t100 = 1.0 / (0.5 * (t49 * c_distal_leg3 + t50 * c_distal_leg3));
-        let s_proximal_leg3 = t100 * (0.35355339059327373 * ((t28 + t31) * t51));
-        let c_proximal_leg3 = t100 * (0.25 * (t51 * t51));
-        let s_distal_leg3 = 0.5 * t91;
-        let s_wrist_leg3 = 0.7071067811865475 * (t44 - t45) / c_distal_leg3;
-        let c_wrist_leg3 = 0.5 * t33 / c_distal_leg3;
-        let t117 = t86 - t85;
-        let t120 = 1.0 - 0.25 * (t117 * t117);
-        ::overact::guard::reach(t120, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t120);
+        let s_proximal_leg3 = 0.35355339059327373 * ((t4 + t8) * t44)
+            / (t45 * c_distal_leg3);
+        let c_proximal_leg3 = t45 / c_distal_leg3;
+        let s_wrist_leg3 = 0.7071067811865475 * (t37 - t38) / c_distal_leg3;
+        let c_wrist_leg3 = t26 / c_distal_leg3;
+        let s_distal_leg4 = t74 - t71;
+        let t99 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t99, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t99);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t126 = 1.0 / (0.5 * (t85 * c_distal_leg4 + t86 * c_distal_leg4));
-        let minus_s_proximal_leg4 = t126 * (0.35355339059327373 * ((t44 + t9) * t87));
-        let c_proximal_leg4 = t126 * (0.25 * (t87 * t87));
-        let s_distal_leg4 = 0.5 * t117;
-        let s_wrist_leg4 = 0.7071067811865475 * (t11 - t28) / c_distal_leg4;
-        let c_wrist_leg4 = 0.5 * t69 / c_distal_leg4;
+        let minus_s_proximal_leg4 = 0.35355339059327373 * ((t37 + t16) * t73)
+            / (t74 * c_distal_leg4);
+        let c_proximal_leg4 = t74 / c_distal_leg4;
+        let s_wrist_leg4 = 0.7071067811865475 * (t18 - t4) / c_distal_leg4;
+        let c_wrist_leg4 = t55 / c_distal_leg4;
         Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(-minus_s_distal_leg1, c_distal_leg1),
@@ -398,7 +393,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 99 operations (39 additions, 56 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 105 intermediates.
+    /// 91 operations (35 additions, 52 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 97 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -421,49 +416,49 @@ impl Spherical4Rrr {
         let t19 = 1.0 - 0.25 * (t16 * t16);
         ::overact::guard::reach(t19, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t19);
-        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t26 = pose[2] * t6;
-        let t27 = pose[0] * t3;
-        let t28 = t26 + t27;
-        let t29 = pose[3] * t0;
-        let t30 = pose[0] * t6;
-        let t31 = t29 - t30;
-        let t33 = t10 - t15;
-        let s_proximal_leg1 = t25 * (0.35355339059327373 * ((t28 - t31) * t33));
-        let c_proximal_leg1 = t25 * (0.25 * (t33 * t33));
-        let t41 = t13 - t4;
-        let t42 = t41 - t31;
-        let t43 = t29 + t30;
-        let t44 = t43 - t14;
-        let t45 = t42 + t44;
-        let t48 = 1.0 - 0.25 * (t45 * t45);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
-        let t54 = 1.0 / (0.5 * (t42 * c_distal_leg2 - t44 * c_distal_leg2));
-        let t55 = t26 - t27;
-        let t57 = t42 - t44;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * ((t55 - t9) * t57));
-        let c_proximal_leg2 = t54 * (0.25 * (t57 * t57));
-        let t66 = t5 + t9;
-        let t67 = t11 + t14;
-        let t68 = t67 - t66;
-        let t71 = 1.0 - 0.25 * (t68 * t68);
-        ::overact::guard::reach(t71, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t71);
-        let t77 = 1.0 / (0.5 * (t66 * c_distal_leg3 + t67 * c_distal_leg3));
-        let t79 = t66 + t67;
-        let s_proximal_leg3 = t77 * (0.35355339059327373 * ((t28 + t31) * t79));
-        let c_proximal_leg3 = t77 * (0.25 * (t79 * t79));
-        let t87 = t41 + t31;
-        let t88 = t43 + t14;
-        let t89 = t88 - t87;
-        let t92 = 1.0 - 0.25 * (t89 * t89);
-        ::overact::guard::reach(t92, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t92);
-        let t98 = 1.0 / (0.5 * (t87 * c_distal_leg4 + t88 * c_distal_leg4));
-        let t100 = t87 + t88;
-        let minus_s_proximal_leg4 = t98 * (0.35355339059327373 * ((t55 + t9) * t100));
-        let c_proximal_leg4 = t98 * (0.25 * (t100 * t100));
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let t25 = pose[2] * t6;
+        let t26 = pose[0] * t3;
+        let t27 = t25 + t26;
+        let t28 = pose[3] * t0;
+        let t29 = pose[0] * t6;
+        let t30 = t28 - t29;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t27 - t30) * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t39 = t13 - t4;
+        let t40 = t39 - t30;
+        let t41 = t28 + t29;
+        let t42 = t41 - t14;
+        let t43 = t40 + t42;
+        let t46 = 1.0 - 0.25 * (t43 * t43);
+        ::overact::guard::reach(t46, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t46);
+        let t48 = t40 - t42;
+        let t51 = 1.0 / (0.5 * (c_distal_leg2 * t48));
+        let t52 = t25 - t26;
+        let minus_s_proximal_leg2 = t51 * (0.35355339059327373 * ((t52 - t9) * t48));
+        let c_proximal_leg2 = t51 * (0.25 * (t48 * t48));
+        let t62 = t11 + t14;
+        let t63 = t5 + t9;
+        let t64 = t62 - t63;
+        let t67 = 1.0 - 0.25 * (t64 * t64);
+        ::overact::guard::reach(t67, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t67);
+        let t69 = t63 + t62;
+        let t72 = 1.0 / (0.5 * (c_distal_leg3 * t69));
+        let s_proximal_leg3 = t72 * (0.35355339059327373 * ((t27 + t30) * t69));
+        let c_proximal_leg3 = t72 * (0.25 * (t69 * t69));
+        let t81 = t41 + t14;
+        let t82 = t39 + t30;
+        let t83 = t81 - t82;
+        let t86 = 1.0 - 0.25 * (t83 * t83);
+        ::overact::guard::reach(t86, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t86);
+        let t88 = t82 + t81;
+        let t91 = 1.0 / (0.5 * (c_distal_leg4 * t88));
+        let minus_s_proximal_leg4 = t91 * (0.35355339059327373 * ((t52 + t9) * t88));
+        let c_proximal_leg4 = t91 * (0.25 * (t88 * t88));
         Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(-minus_s_proximal_leg2, c_proximal_leg2),
@@ -478,7 +473,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4 x 3.
     ///
-    /// 143 operations (47 additions, 88 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 135 intermediates.
+    /// 131 operations (43 additions, 80 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 123 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -497,81 +492,77 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t31 - c_distal_leg1) * t34;
-        let t36 = t13 - t4;
-        let t37 = pose[3] * t0;
-        let t38 = pose[0] * t6;
-        let t39 = t37 - t38;
-        let t40 = t36 - t39;
-        let t41 = t37 + t38;
-        let t42 = t41 - t14;
-        let t43 = t40 + t42;
-        let minus_s_distal_leg2 = 0.5 * t43;
-        let t47 = 1.0 - 0.25 * (t43 * t43);
-        ::overact::guard::reach(t47, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t47);
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t31 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t28 - c_distal_leg1) * t31;
+        let t33 = t13 - t4;
+        let t34 = pose[3] * t0;
+        let t35 = pose[0] * t6;
+        let t36 = t34 - t35;
+        let t37 = t33 - t36;
+        let t38 = t34 + t35;
+        let t39 = t38 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t37 + t39);
+        let t43 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t43, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t43);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t53 = 1.0 / (0.5 * (t40 * c_distal_leg2 - t42 * c_distal_leg2));
-        let t54 = pose[2] * t6;
-        let t55 = pose[0] * t3;
-        let t56 = t54 - t55;
-        let t58 = t40 - t42;
-        let minus_s_proximal_leg2 = t53 * (0.35355339059327373 * ((t56 - t9) * t58));
-        let t63 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t63;
-        let t65 = t11 + t14;
-        let t66 = t5 + t9;
-        let t67 = t65 - t66;
-        let s_distal_leg3 = 0.5 * t67;
-        let t71 = 1.0 - 0.25 * (t67 * t67);
-        ::overact::guard::reach(t71, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t71);
+        let t45 = t37 - t39;
+        let t48 = 1.0 / (0.5 * (c_distal_leg2 * t45));
+        let t49 = pose[2] * t6;
+        let t50 = pose[0] * t3;
+        let t51 = t49 - t50;
+        let minus_s_proximal_leg2 = t48 * (0.35355339059327373 * ((t51 - t9) * t45));
+        let t57 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t57;
+        let t59 = t11 + t14;
+        let t60 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t59 - t60);
+        let t64 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t64, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t64);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t77 = 1.0 / (0.5 * (t66 * c_distal_leg3 + t65 * c_distal_leg3));
-        let t78 = t66 + t65;
-        let c_proximal_leg3 = t77 * (0.25 * (t78 * t78));
-        let t82 = s_distal_leg3 * c_proximal_leg3;
-        let t85 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t82 + c_distal_leg3) * t85;
-        let t87 = t41 + t14;
-        let t88 = t36 + t39;
-        let t89 = t87 - t88;
-        let s_distal_leg4 = 0.5 * t89;
-        let t93 = 1.0 - 0.25 * (t89 * t89);
-        ::overact::guard::reach(t93, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t93);
+        let t66 = t60 + t59;
+        let t69 = 1.0 / (0.5 * (c_distal_leg3 * t66));
+        let c_proximal_leg3 = t69 * (0.25 * (t66 * t66));
+        let t73 = s_distal_leg3 * c_proximal_leg3;
+        let t76 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t73 + c_distal_leg3) * t76;
+        let t78 = t38 + t14;
+        let t79 = t33 + t36;
+        let s_distal_leg4 = 0.5 * (t78 - t79);
+        let t83 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t83, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t83);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t99 = 1.0 / (0.5 * (t88 * c_distal_leg4 + t87 * c_distal_leg4));
-        let t101 = t88 + t87;
-        let minus_s_proximal_leg4 = t99 * (0.35355339059327373 * ((t56 + t9) * t101));
-        let t106 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t106;
-        let t108 = t54 + t55;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * ((t108 - t39) * t27));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t34;
-        let c_proximal_leg2 = t53 * (0.25 * (t58 * t58));
-        let t118 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t118 - c_distal_leg2) * t63;
-        let s_proximal_leg3 = t77 * (0.35355339059327373 * ((t108 + t39) * t78));
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t85;
-        let c_proximal_leg4 = t99 * (0.25 * (t101 * t101));
-        let t131 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t131 + c_distal_leg4) * t106;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t31 + c_distal_leg1) * t34;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t118 + c_distal_leg2) * t63;
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t82 - c_distal_leg3) * t85;
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t131 - c_distal_leg4) * t106;
+        let t85 = t79 + t78;
+        let t88 = 1.0 / (0.5 * (c_distal_leg4 * t85));
+        let minus_s_proximal_leg4 = t88 * (0.35355339059327373 * ((t51 + t9) * t85));
+        let t94 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t94;
+        let t96 = t49 + t50;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t96 - t36) * t21));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t31;
+        let c_proximal_leg2 = t48 * (0.25 * (t45 * t45));
+        let t106 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t106 - c_distal_leg2) * t57;
+        let s_proximal_leg3 = t69 * (0.35355339059327373 * ((t96 + t36) * t66));
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t76;
+        let c_proximal_leg4 = t88 * (0.25 * (t85 * t85));
+        let t119 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t119 + c_distal_leg4) * t94;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t28 + c_distal_leg1) * t31;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t106 + c_distal_leg2) * t57;
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t73 - c_distal_leg3) * t76;
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t119 - c_distal_leg4) * t94;
         Ok([
             [-minus_gproximal_wx_leg1, -minus_gproximal_wy_leg1, gproximal_wz_leg1],
             [-minus_gproximal_wx_leg2, -minus_gproximal_wy_leg2, gproximal_wz_leg2],
@@ -652,7 +643,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3 x 4.
     ///
-    /// 259 operations (93 additions, 155 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 251 intermediates.
+    /// 247 operations (89 additions, 147 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 239 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -671,140 +662,136 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t31 - c_distal_leg1) * t34;
-        let t37 = t13 - t4;
-        let t38 = pose[3] * t0;
-        let t39 = pose[0] * t6;
-        let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t31 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t28 - c_distal_leg1) * t31;
+        let t34 = t13 - t4;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let t37 = t35 - t36;
+        let t38 = t34 - t37;
+        let t39 = t35 + t36;
+        let t40 = t39 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t38 + t40);
+        let t44 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t44, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = pose[2] * t6;
-        let t56 = pose[0] * t3;
-        let t57 = t55 - t56;
-        let t59 = t41 - t43;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * ((t57 - t9) * t59));
-        let t64 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t64;
-        let t68 = t11 + t14;
-        let t69 = t5 + t9;
-        let t70 = t68 - t69;
-        let s_distal_leg3 = 0.5 * t70;
-        let t74 = 1.0 - 0.25 * (t70 * t70);
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        let t46 = t38 - t40;
+        let t49 = 1.0 / (0.5 * (c_distal_leg2 * t46));
+        let t50 = pose[2] * t6;
+        let t51 = pose[0] * t3;
+        let t52 = t50 - t51;
+        let minus_s_proximal_leg2 = t49 * (0.35355339059327373 * ((t52 - t9) * t46));
+        let t58 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t58;
+        let t62 = t11 + t14;
+        let t63 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t62 - t63);
+        let t67 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t67, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t80 = 1.0 / (0.5 * (t69 * c_distal_leg3 + t68 * c_distal_leg3));
-        let t81 = t69 + t68;
-        let c_proximal_leg3 = t80 * (0.25 * (t81 * t81));
-        let t85 = s_distal_leg3 * c_proximal_leg3;
-        let t88 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t85 + c_distal_leg3) * t88;
-        let t92 = t42 + t14;
-        let t93 = t37 + t40;
-        let t94 = t92 - t93;
-        let s_distal_leg4 = 0.5 * t94;
-        let t98 = 1.0 - 0.25 * (t94 * t94);
-        ::overact::guard::reach(t98, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t98);
+        let t69 = t63 + t62;
+        let t72 = 1.0 / (0.5 * (c_distal_leg3 * t69));
+        let c_proximal_leg3 = t72 * (0.25 * (t69 * t69));
+        let t76 = s_distal_leg3 * c_proximal_leg3;
+        let t79 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t76 + c_distal_leg3) * t79;
+        let t83 = t39 + t14;
+        let t84 = t34 + t37;
+        let s_distal_leg4 = 0.5 * (t83 - t84);
+        let t88 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t88, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t104 = 1.0 / (0.5 * (t93 * c_distal_leg4 + t92 * c_distal_leg4));
-        let t106 = t93 + t92;
-        let minus_s_proximal_leg4 = t104 * (0.35355339059327373 * ((t57 + t9) * t106));
-        let t111 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t111;
-        let t114 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t90 = t84 + t83;
+        let t93 = 1.0 / (0.5 * (c_distal_leg4 * t90));
+        let minus_s_proximal_leg4 = t93 * (0.35355339059327373 * ((t52 + t9) * t90));
+        let t99 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t99;
+        let t102 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t114, 0.9999999999999998, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t117 = t55 + t56;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * ((t117 - t40) * t27));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t34;
-        let c_proximal_leg2 = t54 * (0.25 * (t59 * t59));
-        let t128 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t128 - c_distal_leg2) * t64;
-        let s_proximal_leg3 = t80 * (0.35355339059327373 * ((t117 + t40) * t81));
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t88;
-        let c_proximal_leg4 = t104 * (0.25 * (t106 * t106));
-        let t145 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t145 + c_distal_leg4) * t111;
-        let t150 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t102, 0.9999999999999998, "actuators")?;
+        let t103 = 1.0 / t102;
+        let t105 = t50 + t51;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t105 - t37) * t21));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t31;
+        let c_proximal_leg2 = t49 * (0.25 * (t46 * t46));
+        let t116 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t116 - c_distal_leg2) * t58;
+        let s_proximal_leg3 = t72 * (0.35355339059327373 * ((t105 + t37) * t69));
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t79;
+        let c_proximal_leg4 = t93 * (0.25 * (t90 * t90));
+        let t133 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t133 + c_distal_leg4) * t99;
+        let t138 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t151 = t150 * t115;
-        let t160 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        let t139 = t138 * t103;
+        let t148 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t150 * t151;
-        ::overact::guard::platform(t160, 0.9999999999999998, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t163 = minus_gproximal_wx_leg1 * t151 - minus_gproximal_wy_leg1;
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t85 - c_distal_leg3) * t88;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t31 + c_distal_leg1) * t34;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t128 + c_distal_leg2) * t64;
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t145 - c_distal_leg4) * t111;
-        let t190 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t138 * t139;
+        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t151 = minus_gproximal_wx_leg1 * t139 - minus_gproximal_wy_leg1;
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t76 - c_distal_leg3) * t79;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t28 + c_distal_leg1) * t31;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t116 + c_distal_leg2) * t58;
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t133 - c_distal_leg4) * t99;
+        let t178 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t191 = t190 * t115;
-        let t193 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t179 = t178 * t103;
+        let t181 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t150 * t191;
-        let t194 = t193 * t161;
-        let t205 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t138 * t179;
+        let t182 = t181 * t149;
+        let t193 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t190 * t191
-            - t193 * t194;
-        ::overact::guard::platform(t205, 1.9999999999999996, "actuators")?;
-        let t206 = 1.0 / t205;
-        let t211 = t206
-            * (gproximal_wz_leg1 + minus_gproximal_wx_leg1 * t191 - t194 * t163);
-        let t213 = t161 * t163 - t194 * t211;
-        let t220 = minus_gproximal_wx_leg2 * t151 - minus_gproximal_wy_leg2;
-        let t226 = t206
-            * (gproximal_wz_leg2 + minus_gproximal_wx_leg2 * t191 - t194 * t220);
-        let t228 = t161 * t220 - t194 * t226;
-        let t235 = minus_gproximal_wx_leg3 * t151 - minus_gproximal_wy_leg3;
-        let t241 = t206
-            * (minus_gproximal_wx_leg3 * t191 - minus_gproximal_wz_leg3 - t194 * t235);
-        let t243 = t161 * t235 - t194 * t241;
-        let t250 = minus_gproximal_wx_leg4 * t151 - minus_gproximal_wy_leg4;
-        let t256 = t206
-            * (minus_gproximal_wx_leg4 * t191 - minus_gproximal_wz_leg4 - t194 * t250);
-        let t258 = t161 * t250 - t194 * t256;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t178 * t179
+            - t181 * t182;
+        ::overact::guard::platform(t193, 1.9999999999999996, "actuators")?;
+        let t194 = 1.0 / t193;
+        let t199 = t194
+            * (gproximal_wz_leg1 + minus_gproximal_wx_leg1 * t179 - t182 * t151);
+        let t201 = t149 * t151 - t182 * t199;
+        let t208 = minus_gproximal_wx_leg2 * t139 - minus_gproximal_wy_leg2;
+        let t214 = t194
+            * (gproximal_wz_leg2 + minus_gproximal_wx_leg2 * t179 - t182 * t208);
+        let t216 = t149 * t208 - t182 * t214;
+        let t223 = minus_gproximal_wx_leg3 * t139 - minus_gproximal_wy_leg3;
+        let t229 = t194
+            * (minus_gproximal_wx_leg3 * t179 - minus_gproximal_wz_leg3 - t182 * t223);
+        let t231 = t149 * t223 - t182 * t229;
+        let t238 = minus_gproximal_wx_leg4 * t139 - minus_gproximal_wy_leg4;
+        let t244 = t194
+            * (minus_gproximal_wx_leg4 * t179 - minus_gproximal_wz_leg4 - t182 * t238);
+        let t246 = t149 * t238 - t182 * t244;
         Ok([
             [
-                -(minus_gproximal_wx_leg1 * t115 + t151 * t213 + t191 * t211),
-                -(minus_gproximal_wx_leg2 * t115 + t151 * t228 + t191 * t226),
-                -(minus_gproximal_wx_leg3 * t115 + t151 * t243 + t191 * t241),
-                -(minus_gproximal_wx_leg4 * t115 + t151 * t258 + t191 * t256),
+                -(minus_gproximal_wx_leg1 * t103 + t139 * t201 + t179 * t199),
+                -(minus_gproximal_wx_leg2 * t103 + t139 * t216 + t179 * t214),
+                -(minus_gproximal_wx_leg3 * t103 + t139 * t231 + t179 * t229),
+                -(minus_gproximal_wx_leg4 * t103 + t139 * t246 + t179 * t244),
             ],
-            [t213, t228, t243, t258],
-            [t211, t226, t241, t256],
+            [t201, t216, t231, t246],
+            [t199, t214, t229, t244],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -983,7 +970,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 12.
     ///
-    /// 223 operations (75 additions, 140 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 215 intermediates.
+    /// 202 operations (75 additions, 119 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 194 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1005,113 +992,104 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t19, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t21 = 1.0 / c_distal_leg1;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t27 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t28 = t10 - t15;
-        let c_proximal_leg1 = t27 * (0.25 * (t28 * t28));
-        let t32 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t36 = pose[2] * t6;
-        let t37 = pose[0] * t3;
-        let t38 = t36 + t37;
-        let t39 = pose[3] * t0;
-        let t40 = pose[0] * t6;
-        let t41 = t39 - t40;
-        let t42 = t38 - t41;
-        let s_proximal_leg1 = t27 * (0.35355339059327373 * (t42 * t28));
-        let t52 = 0.7071067811865475 * (t32 - c_distal_leg1) * twist[0]
-            + minus_s_distal_leg1 * s_proximal_leg1 * twist[1]
-            - 0.7071067811865475 * (t32 + c_distal_leg1) * twist[2];
-        let minus_rate_proximal_leg1 = t21 * t52;
+        let t22 = t10 - t15;
+        let c_proximal_leg1 = 0.25 * (t22 * t22) / (0.5 * (c_distal_leg1 * t22));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t32 = minus_s_distal_leg1 * t21;
+        let t33 = pose[2] * t6;
+        let t34 = pose[0] * t3;
+        let t35 = t33 + t34;
+        let t36 = pose[3] * t0;
+        let t37 = pose[0] * t6;
+        let t38 = t36 - t37;
+        let t40 = 0.7071067811865475 * (t35 - t38);
+        let t41 = t40 * twist[1];
+        let t47 = 0.7071067811865475 * (t28 - c_distal_leg1) * twist[0] + t32 * t41
+            - 0.7071067811865475 * (t28 + c_distal_leg1) * twist[2];
+        let minus_rate_proximal_leg1 = t21 * t47;
+        let s_proximal_leg1 = t21 * t40;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let rate_wrist_leg1 = minus_s_distal_leg1 * t21 * t52
-            + 0.7071067811865475 * t10 * twist[0] + 0.7071067811865475 * t42 * twist[1]
+        let rate_wrist_leg1 = t32 * t47 + 0.7071067811865475 * t10 * twist[0] + t41
             + 0.7071067811865475 * t15 * twist[2];
-        let t71 = t13 - t4;
-        let t72 = t71 - t41;
-        let t73 = t39 + t40;
-        let t74 = t73 - t14;
-        let t75 = t72 + t74;
-        let t78 = 1.0 - 0.25 * (t75 * t75);
-        ::overact::guard::reach(t78, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t78);
+        let t64 = t13 - t4;
+        let t65 = t64 - t38;
+        let t66 = t36 + t37;
+        let t67 = t66 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t65 + t67);
+        let t71 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t71, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t71);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t80 = 1.0 / c_distal_leg2;
-        let minus_s_distal_leg2 = 0.5 * t75;
-        let t86 = 1.0 / (0.5 * (t72 * c_distal_leg2 - t74 * c_distal_leg2));
-        let t87 = t36 - t37;
-        let t88 = t87 - t9;
-        let t89 = t72 - t74;
-        let minus_s_proximal_leg2 = t86 * (0.35355339059327373 * (t88 * t89));
-        let c_proximal_leg2 = t86 * (0.25 * (t89 * t89));
-        let t98 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t106 = minus_s_distal_leg2 * minus_s_proximal_leg2 * twist[0]
-            + 0.7071067811865475 * (t98 - c_distal_leg2) * twist[1]
-            - 0.7071067811865475 * (t98 + c_distal_leg2) * twist[2];
-        let minus_rate_proximal_leg2 = t80 * t106;
+        let t73 = 1.0 / c_distal_leg2;
+        let t74 = minus_s_distal_leg2 * t73;
+        let t75 = t33 - t34;
+        let t77 = 0.7071067811865475 * (t75 - t9);
+        let t78 = t77 * twist[0];
+        let t80 = t65 - t67;
+        let c_proximal_leg2 = 0.25 * (t80 * t80) / (0.5 * (c_distal_leg2 * t80));
+        let t86 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t94 = t74 * t78 + 0.7071067811865475 * (t86 - c_distal_leg2) * twist[1]
+            - 0.7071067811865475 * (t86 + c_distal_leg2) * twist[2];
+        let minus_rate_proximal_leg2 = t73 * t94;
+        let minus_s_proximal_leg2 = t73 * t77;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let rate_wrist_leg2 = minus_s_distal_leg2 * t80 * t106
-            + 0.7071067811865475 * t88 * twist[0] + 0.7071067811865475 * t72 * twist[1]
-            + 0.7071067811865475 * t74 * twist[2];
-        let t125 = t11 + t14;
-        let t126 = t5 + t9;
-        let t127 = t125 - t126;
-        let t130 = 1.0 - 0.25 * (t127 * t127);
-        ::overact::guard::reach(t130, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t130);
+        let rate_wrist_leg2 = t74 * t94 + t78 + 0.7071067811865475 * t65 * twist[1]
+            + 0.7071067811865475 * t67 * twist[2];
+        let t111 = t11 + t14;
+        let t112 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t111 - t112);
+        let t116 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t116, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t116);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t132 = 1.0 / c_distal_leg3;
-        let s_distal_leg3 = 0.5 * t127;
-        let t138 = 1.0 / (0.5 * (t126 * c_distal_leg3 + t125 * c_distal_leg3));
-        let t139 = t126 + t125;
-        let c_proximal_leg3 = t138 * (0.25 * (t139 * t139));
-        let t143 = s_distal_leg3 * c_proximal_leg3;
-        let t147 = t38 + t41;
-        let s_proximal_leg3 = t138 * (0.35355339059327373 * (t147 * t139));
-        let t157 = 0.7071067811865475 * (t143 + c_distal_leg3) * twist[0]
+        let t118 = t112 + t111;
+        let t121 = 1.0 / (0.5 * (c_distal_leg3 * t118));
+        let c_proximal_leg3 = t121 * (0.25 * (t118 * t118));
+        let t125 = s_distal_leg3 * c_proximal_leg3;
+        let s_proximal_leg3 = t121 * (0.35355339059327373 * ((t35 + t38) * t118));
+        let t139 = 0.7071067811865475 * (t125 + c_distal_leg3) * twist[0]
             + s_distal_leg3 * s_proximal_leg3 * twist[1]
-            + 0.7071067811865475 * (t143 - c_distal_leg3) * twist[2];
-        let minus_rate_proximal_leg3 = t132 * t157;
+            + 0.7071067811865475 * (t125 - c_distal_leg3) * twist[2];
+        let minus_rate_proximal_leg3 = t139 / c_distal_leg3;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let minus_rate_wrist_leg3 = s_distal_leg3 * t132 * t157
-            + 0.7071067811865475 * t126 * twist[0] + 0.7071067811865475 * t147 * twist[1]
-            + 0.7071067811865475 * t125 * twist[2];
-        let t176 = t73 + t14;
-        let t177 = t71 + t41;
-        let t178 = t176 - t177;
-        let t181 = 1.0 - 0.25 * (t178 * t178);
-        ::overact::guard::reach(t181, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t181);
+        let t157 = t9 * twist[0] + t38 * twist[1] + t14 * twist[2];
+        let minus_rate_wrist_leg3 = s_distal_leg3 * minus_rate_proximal_leg3
+            + 0.7071067811865475
+                * (t5 * twist[0] + t35 * twist[1] + t11 * twist[2] + t157);
+        let t161 = t66 + t14;
+        let t162 = t64 + t38;
+        let s_distal_leg4 = 0.5 * (t161 - t162);
+        let t166 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t166, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t166);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t183 = 1.0 / c_distal_leg4;
-        let s_distal_leg4 = 0.5 * t178;
-        let t189 = 1.0 / (0.5 * (t177 * c_distal_leg4 + t176 * c_distal_leg4));
-        let t190 = t87 + t9;
-        let t191 = t177 + t176;
-        let minus_s_proximal_leg4 = t189 * (0.35355339059327373 * (t190 * t191));
-        let c_proximal_leg4 = t189 * (0.25 * (t191 * t191));
-        let t200 = s_distal_leg4 * c_proximal_leg4;
-        let t208 = s_distal_leg4 * minus_s_proximal_leg4 * twist[0]
-            + 0.7071067811865475 * (t200 + c_distal_leg4) * twist[1]
-            + 0.7071067811865475 * (t200 - c_distal_leg4) * twist[2];
-        let minus_rate_proximal_leg4 = t183 * t208;
+        let t168 = t162 + t161;
+        let t171 = 1.0 / (0.5 * (c_distal_leg4 * t168));
+        let minus_s_proximal_leg4 = t171 * (0.35355339059327373 * ((t75 + t9) * t168));
+        let c_proximal_leg4 = t171 * (0.25 * (t168 * t168));
+        let t181 = s_distal_leg4 * c_proximal_leg4;
+        let t189 = s_distal_leg4 * minus_s_proximal_leg4 * twist[0]
+            + 0.7071067811865475 * (t181 + c_distal_leg4) * twist[1]
+            + 0.7071067811865475 * (t181 - c_distal_leg4) * twist[2];
+        let minus_rate_proximal_leg4 = t189 / c_distal_leg4;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let minus_rate_wrist_leg4 = s_distal_leg4 * t183 * t208
-            + 0.7071067811865475 * t190 * twist[0] + 0.7071067811865475 * t177 * twist[1]
-            + 0.7071067811865475 * t176 * twist[2];
+        let minus_rate_wrist_leg4 = s_distal_leg4 * minus_rate_proximal_leg4
+            + 0.7071067811865475
+                * (t75 * twist[0] + t64 * twist[1] + t66 * twist[2] + t157);
         Ok([
             -minus_rate_proximal_leg1, rate_distal_leg1, rate_wrist_leg1, -minus_rate_proximal_leg2,
             rate_distal_leg2, rate_wrist_leg2, -minus_rate_proximal_leg3, rate_distal_leg3,
@@ -1128,7 +1106,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 12.
     ///
-    /// 323 operations (119 additions, 196 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 315 intermediates.
+    /// 317 operations (123 additions, 186 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 309 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1151,164 +1129,156 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t19, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t21 = 1.0 / c_distal_leg1;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t27 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t28 = t10 - t15;
-        let c_proximal_leg1 = t27 * (0.25 * (t28 * t28));
-        let t32 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 0.7071067811865475 * (t32 - c_distal_leg1);
-        let t36 = pose[2] * t6;
-        let t37 = pose[0] * t3;
-        let t38 = t36 + t37;
-        let t39 = pose[3] * t0;
-        let t40 = pose[0] * t6;
-        let t41 = t39 - t40;
-        let t42 = t38 - t41;
-        let s_proximal_leg1 = t27 * (0.35355339059327373 * (t42 * t28));
-        let t46 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t50 = 0.7071067811865475 * (t32 + c_distal_leg1);
+        let t22 = t10 - t15;
+        let c_proximal_leg1 = 0.25 * (t22 * t22) / (0.5 * (c_distal_leg1 * t22));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t30 = 0.7071067811865475 * (t28 - c_distal_leg1);
+        let t32 = pose[2] * t6;
+        let t33 = pose[0] * t3;
+        let t34 = t32 + t33;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let t37 = t35 - t36;
+        let t39 = 0.7071067811865475 * (t34 - t37);
+        let s_proximal_leg1 = t21 * t39;
+        let t41 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t45 = 0.7071067811865475 * (t28 + c_distal_leg1);
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t59 = minus_s_distal_leg1 * t21;
-        let t64 = t34 * twist[0] + t46 * twist[1] - t50 * twist[2];
-        let t65 = t59 * t64;
-        let t67 = 0.7071067811865475 * t10;
-        let t69 = 0.7071067811865475 * t42;
-        let t72 = 0.7071067811865475 * t15;
-        let rate_wrist_leg1 = t65 + t67 * twist[0] + t69 * twist[1] + t72 * twist[2];
-        let t78 = t34 * acceleration[0] + t46 * acceleration[1] - t50 * acceleration[2]
-            - (rate_distal_leg1 * t65 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t21 * t78;
+        let t54 = minus_s_distal_leg1 * t21;
+        let t59 = t30 * twist[0] + t41 * twist[1] - t45 * twist[2];
+        let t60 = t54 * t59;
+        let t62 = 0.7071067811865475 * t10;
+        let t66 = 0.7071067811865475 * t15;
+        let rate_wrist_leg1 = t60 + t62 * twist[0] + t39 * twist[1] + t66 * twist[2];
+        let t72 = t30 * acceleration[0] + t41 * acceleration[1] - t45 * acceleration[2]
+            - (rate_distal_leg1 * t60 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t21 * t72;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t64 * rate_wrist_leg1;
-        let minus_rate_dot_wrist_leg1 = t64 * rate_distal_leg1
-            - (t67 * acceleration[0] + t69 * acceleration[1] + t72 * acceleration[2])
-            - t59 * t78;
-        let t96 = t13 - t4;
-        let t97 = t96 - t41;
-        let t98 = t39 + t40;
-        let t99 = t98 - t14;
-        let t100 = t97 + t99;
-        let t103 = 1.0 - 0.25 * (t100 * t100);
-        ::overact::guard::reach(t103, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t103);
+            + minus_gdistal_wx_leg1 * acceleration[2] + t59 * rate_wrist_leg1;
+        let minus_rate_dot_wrist_leg1 = t59 * rate_distal_leg1
+            - (t62 * acceleration[0] + t39 * acceleration[1] + t66 * acceleration[2])
+            - t54 * t72;
+        let t90 = t13 - t4;
+        let t91 = t90 - t37;
+        let t92 = t35 + t36;
+        let t93 = t92 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t91 + t93);
+        let t97 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t97, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t97);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t105 = 1.0 / c_distal_leg2;
-        let minus_s_distal_leg2 = 0.5 * t100;
-        let t111 = 1.0 / (0.5 * (t97 * c_distal_leg2 - t99 * c_distal_leg2));
-        let t112 = t36 - t37;
-        let t113 = t112 - t9;
-        let t114 = t97 - t99;
-        let minus_s_proximal_leg2 = t111 * (0.35355339059327373 * (t113 * t114));
-        let t118 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let c_proximal_leg2 = t111 * (0.25 * (t114 * t114));
-        let t123 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t125 = 0.7071067811865475 * (t123 - c_distal_leg2);
-        let t129 = 0.7071067811865475 * (t123 + c_distal_leg2);
+        let t99 = 1.0 / c_distal_leg2;
+        let t100 = t32 - t33;
+        let t102 = 0.7071067811865475 * (t100 - t9);
+        let minus_s_proximal_leg2 = t99 * t102;
+        let t104 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let t106 = t91 - t93;
+        let c_proximal_leg2 = 0.25 * (t106 * t106) / (0.5 * (c_distal_leg2 * t106));
+        let t112 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t114 = 0.7071067811865475 * (t112 - c_distal_leg2);
+        let t118 = 0.7071067811865475 * (t112 + c_distal_leg2);
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t138 = minus_s_distal_leg2 * t105;
-        let t143 = t118 * twist[0] + t125 * twist[1] - t129 * twist[2];
-        let t144 = t138 * t143;
-        let t146 = 0.7071067811865475 * t113;
-        let t148 = 0.7071067811865475 * t97;
-        let t151 = 0.7071067811865475 * t99;
-        let rate_wrist_leg2 = t144 + t146 * twist[0] + t148 * twist[1] + t151 * twist[2];
-        let t157 = t118 * acceleration[0] + t125 * acceleration[1]
-            - t129 * acceleration[2]
-            - (rate_distal_leg2 * t144 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t105 * t157;
+        let t127 = minus_s_distal_leg2 * t99;
+        let t132 = t104 * twist[0] + t114 * twist[1] - t118 * twist[2];
+        let t133 = t127 * t132;
+        let t136 = 0.7071067811865475 * t91;
+        let t139 = 0.7071067811865475 * t93;
+        let rate_wrist_leg2 = t133 + t102 * twist[0] + t136 * twist[1] + t139 * twist[2];
+        let t145 = t104 * acceleration[0] + t114 * acceleration[1]
+            - t118 * acceleration[2]
+            - (rate_distal_leg2 * t133 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t99 * t145;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t143 * rate_wrist_leg2;
-        let minus_rate_dot_wrist_leg2 = t143 * rate_distal_leg2
-            - (t146 * acceleration[0] + t148 * acceleration[1] + t151 * acceleration[2])
-            - t138 * t157;
-        let t175 = t11 + t14;
-        let t176 = t5 + t9;
-        let t177 = t175 - t176;
-        let t180 = 1.0 - 0.25 * (t177 * t177);
-        ::overact::guard::reach(t180, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t180);
+            + t132 * rate_wrist_leg2;
+        let minus_rate_dot_wrist_leg2 = t132 * rate_distal_leg2
+            - (t102 * acceleration[0] + t136 * acceleration[1] + t139 * acceleration[2])
+            - t127 * t145;
+        let t163 = t11 + t14;
+        let t164 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t163 - t164);
+        let t168 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t168, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t168);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t182 = 1.0 / c_distal_leg3;
-        let s_distal_leg3 = 0.5 * t177;
-        let t188 = 1.0 / (0.5 * (t176 * c_distal_leg3 + t175 * c_distal_leg3));
-        let t189 = t176 + t175;
-        let c_proximal_leg3 = t188 * (0.25 * (t189 * t189));
-        let t193 = s_distal_leg3 * c_proximal_leg3;
-        let t195 = 0.7071067811865475 * (t193 + c_distal_leg3);
-        let t197 = t38 + t41;
-        let s_proximal_leg3 = t188 * (0.35355339059327373 * (t197 * t189));
-        let t201 = s_distal_leg3 * s_proximal_leg3;
-        let t205 = 0.7071067811865475 * (t193 - c_distal_leg3);
+        let t170 = 1.0 / c_distal_leg3;
+        let t171 = t164 + t163;
+        let t174 = 1.0 / (0.5 * (c_distal_leg3 * t171));
+        let c_proximal_leg3 = t174 * (0.25 * (t171 * t171));
+        let t178 = s_distal_leg3 * c_proximal_leg3;
+        let t180 = 0.7071067811865475 * (t178 + c_distal_leg3);
+        let s_proximal_leg3 = t174 * (0.35355339059327373 * ((t34 + t37) * t171));
+        let t186 = s_distal_leg3 * s_proximal_leg3;
+        let t190 = 0.7071067811865475 * (t178 - c_distal_leg3);
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t214 = s_distal_leg3 * t182;
-        let t219 = t195 * twist[0] + t201 * twist[1] + t205 * twist[2];
-        let t220 = t214 * t219;
-        let t222 = 0.7071067811865475 * t176;
-        let t224 = 0.7071067811865475 * t197;
-        let t227 = 0.7071067811865475 * t175;
-        let minus_rate_wrist_leg3 = t220 + t222 * twist[0] + t224 * twist[1]
-            + t227 * twist[2];
-        let t233 = t195 * acceleration[0] + t201 * acceleration[1]
-            + t205 * acceleration[2] + rate_distal_leg3 * t220
+        let t199 = s_distal_leg3 * t170;
+        let t204 = t180 * twist[0] + t186 * twist[1] + t190 * twist[2];
+        let t205 = t199 * t204;
+        let t216 = t9 * twist[0] + t37 * twist[1] + t14 * twist[2];
+        let minus_rate_wrist_leg3 = t205
+            + 0.7071067811865475
+                * (t5 * twist[0] + t34 * twist[1] + t11 * twist[2] + t216);
+        let t222 = t180 * acceleration[0] + t186 * acceleration[1]
+            + t190 * acceleration[2] + rate_distal_leg3 * t205
             + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t182 * t233;
+        let minus_rate_dot_proximal_leg3 = t170 * t222;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t219 * minus_rate_wrist_leg3;
-        let minus_rate_dot_wrist_leg3 = t214 * t233 + t222 * acceleration[0]
-            + t224 * acceleration[1] + t227 * acceleration[2] + t219 * rate_distal_leg3;
-        let t251 = t98 + t14;
-        let t252 = t96 + t41;
-        let t253 = t251 - t252;
-        let t256 = 1.0 - 0.25 * (t253 * t253);
-        ::overact::guard::reach(t256, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t256);
+            - t204 * minus_rate_wrist_leg3;
+        let t241 = t9 * acceleration[0] + t37 * acceleration[1] + t14 * acceleration[2];
+        let minus_rate_dot_wrist_leg3 = t199 * t222
+            + 0.7071067811865475
+                * (t5 * acceleration[0] + t34 * acceleration[1] + t11 * acceleration[2]
+                    + t241) + t204 * rate_distal_leg3;
+        let t247 = t92 + t14;
+        let t248 = t90 + t37;
+        let s_distal_leg4 = 0.5 * (t247 - t248);
+        let t252 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t252, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t252);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t258 = 1.0 / c_distal_leg4;
-        let s_distal_leg4 = 0.5 * t253;
-        let t264 = 1.0 / (0.5 * (t252 * c_distal_leg4 + t251 * c_distal_leg4));
-        let t265 = t112 + t9;
-        let t266 = t252 + t251;
-        let minus_s_proximal_leg4 = t264 * (0.35355339059327373 * (t265 * t266));
-        let t270 = s_distal_leg4 * minus_s_proximal_leg4;
-        let c_proximal_leg4 = t264 * (0.25 * (t266 * t266));
-        let t275 = s_distal_leg4 * c_proximal_leg4;
-        let t277 = 0.7071067811865475 * (t275 + c_distal_leg4);
-        let t281 = 0.7071067811865475 * (t275 - c_distal_leg4);
+        let t254 = 1.0 / c_distal_leg4;
+        let t255 = t248 + t247;
+        let t258 = 1.0 / (0.5 * (c_distal_leg4 * t255));
+        let minus_s_proximal_leg4 = t258 * (0.35355339059327373 * ((t100 + t9) * t255));
+        let t263 = s_distal_leg4 * minus_s_proximal_leg4;
+        let c_proximal_leg4 = t258 * (0.25 * (t255 * t255));
+        let t268 = s_distal_leg4 * c_proximal_leg4;
+        let t270 = 0.7071067811865475 * (t268 + c_distal_leg4);
+        let t274 = 0.7071067811865475 * (t268 - c_distal_leg4);
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t290 = s_distal_leg4 * t258;
-        let t295 = t270 * twist[0] + t277 * twist[1] + t281 * twist[2];
-        let t296 = t290 * t295;
-        let t298 = 0.7071067811865475 * t265;
-        let t300 = 0.7071067811865475 * t252;
-        let t303 = 0.7071067811865475 * t251;
-        let minus_rate_wrist_leg4 = t296 + t298 * twist[0] + t300 * twist[1]
-            + t303 * twist[2];
-        let t309 = t270 * acceleration[0] + t277 * acceleration[1]
-            + t281 * acceleration[2] + rate_distal_leg4 * t296
+        let t283 = s_distal_leg4 * t254;
+        let t288 = t263 * twist[0] + t270 * twist[1] + t274 * twist[2];
+        let t289 = t283 * t288;
+        let minus_rate_wrist_leg4 = t289
+            + 0.7071067811865475
+                * (t100 * twist[0] + t90 * twist[1] + t92 * twist[2] + t216);
+        let t301 = t263 * acceleration[0] + t270 * acceleration[1]
+            + t274 * acceleration[2] + rate_distal_leg4 * t289
             + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t258 * t309;
+        let minus_rate_dot_proximal_leg4 = t254 * t301;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t295 * minus_rate_wrist_leg4;
-        let minus_rate_dot_wrist_leg4 = t290 * t309 + t298 * acceleration[0]
-            + t300 * acceleration[1] + t303 * acceleration[2] + t295 * rate_distal_leg4;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t288 * minus_rate_wrist_leg4;
+        let minus_rate_dot_wrist_leg4 = t283 * t301
+            + 0.7071067811865475
+                * (t100 * acceleration[0] + t90 * acceleration[1] + t92 * acceleration[2]
+                    + t241) + t288 * rate_distal_leg4;
         Ok([
             -minus_rate_dot_proximal_leg1, rate_dot_distal_leg1, -minus_rate_dot_wrist_leg1,
             -minus_rate_dot_proximal_leg2, rate_dot_distal_leg2, -minus_rate_dot_wrist_leg2,
@@ -1324,7 +1294,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 234 operations (84 additions, 139 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 235 intermediates.
+    /// 222 operations (80 additions, 131 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 223 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1346,131 +1316,127 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t31 - c_distal_leg1) * t34;
-        let t37 = t13 - t4;
-        let t38 = pose[3] * t0;
-        let t39 = pose[0] * t6;
-        let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t31 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t28 - c_distal_leg1) * t31;
+        let t34 = t13 - t4;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let t37 = t35 - t36;
+        let t38 = t34 - t37;
+        let t39 = t35 + t36;
+        let t40 = t39 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t38 + t40);
+        let t44 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t44, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = pose[2] * t6;
-        let t56 = pose[0] * t3;
-        let t57 = t55 - t56;
-        let t59 = t41 - t43;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * ((t57 - t9) * t59));
-        let t64 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t64;
-        let t68 = t11 + t14;
-        let t69 = t5 + t9;
-        let t70 = t68 - t69;
-        let s_distal_leg3 = 0.5 * t70;
-        let t74 = 1.0 - 0.25 * (t70 * t70);
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        let t46 = t38 - t40;
+        let t49 = 1.0 / (0.5 * (c_distal_leg2 * t46));
+        let t50 = pose[2] * t6;
+        let t51 = pose[0] * t3;
+        let t52 = t50 - t51;
+        let minus_s_proximal_leg2 = t49 * (0.35355339059327373 * ((t52 - t9) * t46));
+        let t58 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t58;
+        let t62 = t11 + t14;
+        let t63 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t62 - t63);
+        let t67 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t67, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t80 = 1.0 / (0.5 * (t69 * c_distal_leg3 + t68 * c_distal_leg3));
-        let t81 = t69 + t68;
-        let c_proximal_leg3 = t80 * (0.25 * (t81 * t81));
-        let t85 = s_distal_leg3 * c_proximal_leg3;
-        let t88 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t85 + c_distal_leg3) * t88;
-        let t92 = t42 + t14;
-        let t93 = t37 + t40;
-        let t94 = t92 - t93;
-        let s_distal_leg4 = 0.5 * t94;
-        let t98 = 1.0 - 0.25 * (t94 * t94);
-        ::overact::guard::reach(t98, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t98);
+        let t69 = t63 + t62;
+        let t72 = 1.0 / (0.5 * (c_distal_leg3 * t69));
+        let c_proximal_leg3 = t72 * (0.25 * (t69 * t69));
+        let t76 = s_distal_leg3 * c_proximal_leg3;
+        let t79 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t76 + c_distal_leg3) * t79;
+        let t83 = t39 + t14;
+        let t84 = t34 + t37;
+        let s_distal_leg4 = 0.5 * (t83 - t84);
+        let t88 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t88, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t104 = 1.0 / (0.5 * (t93 * c_distal_leg4 + t92 * c_distal_leg4));
-        let t106 = t93 + t92;
-        let minus_s_proximal_leg4 = t104 * (0.35355339059327373 * ((t57 + t9) * t106));
-        let t111 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t111;
-        let t114 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t90 = t84 + t83;
+        let t93 = 1.0 / (0.5 * (c_distal_leg4 * t90));
+        let minus_s_proximal_leg4 = t93 * (0.35355339059327373 * ((t52 + t9) * t90));
+        let t99 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t99;
+        let t102 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t121 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t109 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
-        let t122 = 1.0 / t121;
-        let t124 = t55 + t56;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * ((t124 - t40) * t27));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t34;
-        let c_proximal_leg2 = t54 * (0.25 * (t59 * t59));
-        let t135 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t135 - c_distal_leg2) * t64;
-        let s_proximal_leg3 = t80 * (0.35355339059327373 * ((t124 + t40) * t81));
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t88;
-        let c_proximal_leg4 = t104 * (0.25 * (t106 * t106));
-        let t152 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t152 + c_distal_leg4) * t111;
-        let t157 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t109, 0.9999999999999998, "actuators")?;
+        let t110 = 1.0 / t109;
+        let t112 = t50 + t51;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t112 - t37) * t21));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t31;
+        let c_proximal_leg2 = t49 * (0.25 * (t46 * t46));
+        let t123 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t123 - c_distal_leg2) * t58;
+        let s_proximal_leg3 = t72 * (0.35355339059327373 * ((t112 + t37) * t69));
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t79;
+        let c_proximal_leg4 = t93 * (0.25 * (t90 * t90));
+        let t140 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t140 + c_distal_leg4) * t99;
+        let t145 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t158 = t157 * t122;
-        let t167 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        let t146 = t145 * t110;
+        let t155 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t157 * t158;
-        ::overact::guard::platform(t167, 0.9999999999999998, "actuators")?;
-        let t168 = 1.0 / t167;
-        let t177 = t114 * t158
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t145 * t146;
+        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
+        let t156 = 1.0 / t155;
+        let t165 = t102 * t146
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t85 - c_distal_leg3) * t88;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t31 + c_distal_leg1) * t34;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t135 + c_distal_leg2) * t64;
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t152 - c_distal_leg4) * t111;
-        let t204 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t76 - c_distal_leg3) * t79;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t28 + c_distal_leg1) * t31;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t123 + c_distal_leg2) * t58;
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t140 - c_distal_leg4) * t99;
+        let t192 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t205 = t204 * t122;
-        let t207 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t193 = t192 * t110;
+        let t195 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t157 * t205;
-        let t208 = t207 * t168;
-        let t219 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t204 * t205
-            - t207 * t208;
-        ::overact::guard::platform(t219, 1.9999999999999996, "actuators")?;
-        let t230 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t145 * t193;
+        let t196 = t195 * t156;
+        let t207 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t114 * t205
-            - t208 * t177;
-        let t231 = t230 / t219;
-        let t233 = t168 * t177 - t208 * t231;
-        Ok([-(t114 * t122 + t158 * t233 + t205 * t231), t233, t231])
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t102 * t193
+            - t196 * t165;
+        let t218 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + gproximal_wz_leg2 * gproximal_wz_leg2
+            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t192 * t193
+            - t195 * t196;
+        ::overact::guard::platform(t218, 1.9999999999999996, "actuators")?;
+        let t219 = t207 / t218;
+        let t221 = t156 * t165 - t196 * t219;
+        Ok([-(t102 * t110 + t146 * t221 + t193 * t219), t221, t219])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1481,7 +1447,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 342 operations (120 additions, 211 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 343 intermediates.
+    /// 327 operations (120 additions, 196 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 328 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1504,183 +1470,176 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t18 = t10 - t15;
+        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t33 = 0.7071067811865475 * (t31 - c_distal_leg1);
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t33 * t34;
-        let t37 = pose[2] * t6;
-        let t38 = pose[0] * t3;
-        let t39 = t37 + t38;
-        let t40 = pose[3] * t0;
-        let t41 = pose[0] * t6;
-        let t42 = t40 - t41;
-        let t43 = t39 - t42;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t43 * t27));
+        let c_proximal_leg1 = 0.25 * (t18 * t18) / (0.5 * (c_distal_leg1 * t18));
+        let t27 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t29 = 0.7071067811865475 * (t27 - c_distal_leg1);
+        let t30 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = t29 * t30;
+        let t33 = pose[2] * t6;
+        let t34 = pose[0] * t3;
+        let t35 = t33 + t34;
+        let t36 = pose[3] * t0;
+        let t37 = pose[0] * t6;
+        let t38 = t36 - t37;
+        let t40 = 0.7071067811865475 * (t35 - t38);
+        let s_proximal_leg1 = t30 * t40;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t54 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t58 = 0.7071067811865475 * (t31 + c_distal_leg1);
-        let t61 = minus_s_distal_leg1 * t34
-            * (t33 * twist[0] + t54 * twist[1] - t58 * twist[2]);
-        let rate_wrist_leg1 = t61 + 0.7071067811865475 * t10 * twist[0]
-            + 0.7071067811865475 * t43 * twist[1] + 0.7071067811865475 * t15 * twist[2];
-        let rate_dot_proximal_leg1 = t34
-            * (rate_distal_leg1 * t61 + rate_distal_leg1 * rate_wrist_leg1);
-        let t75 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let t77 = t13 - t4;
-        let t78 = t77 - t42;
-        let t79 = t40 + t41;
-        let t80 = t79 - t14;
-        let t81 = t78 + t80;
-        let minus_s_distal_leg2 = 0.5 * t81;
-        let t85 = 1.0 - 0.25 * (t81 * t81);
-        ::overact::guard::reach(t85, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t85);
+        let t49 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t53 = 0.7071067811865475 * (t27 + c_distal_leg1);
+        let t56 = minus_s_distal_leg1 * t30
+            * (t29 * twist[0] + t49 * twist[1] - t53 * twist[2]);
+        let rate_wrist_leg1 = t56 + 0.7071067811865475 * t10 * twist[0] + t40 * twist[1]
+            + 0.7071067811865475 * t15 * twist[2];
+        let rate_dot_proximal_leg1 = t30
+            * (rate_distal_leg1 * t56 + rate_distal_leg1 * rate_wrist_leg1);
+        let t69 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let t71 = t13 - t4;
+        let t72 = t71 - t38;
+        let t73 = t36 + t37;
+        let t74 = t73 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t72 + t74);
+        let t78 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t78, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t78);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t91 = 1.0 / (0.5 * (t78 * c_distal_leg2 - t80 * c_distal_leg2));
-        let t92 = t37 - t38;
-        let t93 = t92 - t9;
-        let t94 = t78 - t80;
-        let minus_s_proximal_leg2 = t91 * (0.35355339059327373 * (t93 * t94));
-        let t98 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let t99 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t98 * t99;
+        let t80 = 1.0 / c_distal_leg2;
+        let t81 = t33 - t34;
+        let t83 = 0.7071067811865475 * (t81 - t9);
+        let minus_s_proximal_leg2 = t80 * t83;
+        let t85 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t85 * t80;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let c_proximal_leg2 = t91 * (0.25 * (t94 * t94));
+        let t89 = t72 - t74;
+        let c_proximal_leg2 = 0.25 * (t89 * t89) / (0.5 * (c_distal_leg2 * t89));
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t112 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t114 = 0.7071067811865475 * (t112 - c_distal_leg2);
-        let t118 = 0.7071067811865475 * (t112 + c_distal_leg2);
-        let t121 = minus_s_distal_leg2 * t99
-            * (t98 * twist[0] + t114 * twist[1] - t118 * twist[2]);
-        let rate_wrist_leg2 = t121 + 0.7071067811865475 * t93 * twist[0]
-            + 0.7071067811865475 * t78 * twist[1] + 0.7071067811865475 * t80 * twist[2];
-        let rate_dot_proximal_leg2 = t99
-            * (rate_distal_leg2 * t121 + rate_distal_leg2 * rate_wrist_leg2);
-        let t135 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let t138 = t11 + t14;
-        let t139 = t5 + t9;
-        let t140 = t138 - t139;
-        let s_distal_leg3 = 0.5 * t140;
-        let t144 = 1.0 - 0.25 * (t140 * t140);
-        ::overact::guard::reach(t144, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t144);
+        let t101 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t103 = 0.7071067811865475 * (t101 - c_distal_leg2);
+        let t107 = 0.7071067811865475 * (t101 + c_distal_leg2);
+        let t110 = minus_s_distal_leg2 * t80
+            * (t85 * twist[0] + t103 * twist[1] - t107 * twist[2]);
+        let rate_wrist_leg2 = t110 + t83 * twist[0] + 0.7071067811865475 * t72 * twist[1]
+            + 0.7071067811865475 * t74 * twist[2];
+        let rate_dot_proximal_leg2 = t80
+            * (rate_distal_leg2 * t110 + rate_distal_leg2 * rate_wrist_leg2);
+        let t123 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let t126 = t11 + t14;
+        let t127 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t126 - t127);
+        let t131 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t131, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t131);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t150 = 1.0 / (0.5 * (t139 * c_distal_leg3 + t138 * c_distal_leg3));
-        let t151 = t139 + t138;
-        let c_proximal_leg3 = t150 * (0.25 * (t151 * t151));
-        let t155 = s_distal_leg3 * c_proximal_leg3;
-        let t157 = 0.7071067811865475 * (t155 + c_distal_leg3);
-        let t158 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = t157 * t158;
-        let t160 = t39 + t42;
-        let s_proximal_leg3 = t150 * (0.35355339059327373 * (t160 * t151));
+        let t133 = t127 + t126;
+        let t136 = 1.0 / (0.5 * (c_distal_leg3 * t133));
+        let c_proximal_leg3 = t136 * (0.25 * (t133 * t133));
+        let t140 = s_distal_leg3 * c_proximal_leg3;
+        let t142 = 0.7071067811865475 * (t140 + c_distal_leg3);
+        let t143 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = t142 * t143;
+        let s_proximal_leg3 = t136 * (0.35355339059327373 * ((t35 + t38) * t133));
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t172 = s_distal_leg3 * s_proximal_leg3;
-        let t176 = 0.7071067811865475 * (t155 - c_distal_leg3);
-        let t179 = s_distal_leg3 * t158
-            * (t157 * twist[0] + t172 * twist[1] + t176 * twist[2]);
-        let minus_rate_wrist_leg3 = t179 + 0.7071067811865475 * t139 * twist[0]
-            + 0.7071067811865475 * t160 * twist[1]
-            + 0.7071067811865475 * t138 * twist[2];
-        let minus_rate_dot_proximal_leg3 = t158
-            * (rate_distal_leg3 * t179 + rate_distal_leg3 * minus_rate_wrist_leg3);
-        let t193 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t196 = t79 + t14;
-        let t197 = t77 + t42;
-        let t198 = t196 - t197;
-        let s_distal_leg4 = 0.5 * t198;
-        let t202 = 1.0 - 0.25 * (t198 * t198);
-        ::overact::guard::reach(t202, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t202);
+        let t157 = s_distal_leg3 * s_proximal_leg3;
+        let t161 = 0.7071067811865475 * (t140 - c_distal_leg3);
+        let t164 = s_distal_leg3 * t143
+            * (t142 * twist[0] + t157 * twist[1] + t161 * twist[2]);
+        let t175 = t9 * twist[0] + t38 * twist[1] + t14 * twist[2];
+        let minus_rate_wrist_leg3 = t164
+            + 0.7071067811865475
+                * (t5 * twist[0] + t35 * twist[1] + t11 * twist[2] + t175);
+        let minus_rate_dot_proximal_leg3 = t143
+            * (rate_distal_leg3 * t164 + rate_distal_leg3 * minus_rate_wrist_leg3);
+        let t182 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t185 = t73 + t14;
+        let t186 = t71 + t38;
+        let s_distal_leg4 = 0.5 * (t185 - t186);
+        let t190 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t190, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t190);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t208 = 1.0 / (0.5 * (t197 * c_distal_leg4 + t196 * c_distal_leg4));
-        let t209 = t92 + t9;
-        let t210 = t197 + t196;
-        let minus_s_proximal_leg4 = t208 * (0.35355339059327373 * (t209 * t210));
-        let t214 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t215 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t214 * t215;
-        let c_proximal_leg4 = t208 * (0.25 * (t210 * t210));
+        let t192 = t186 + t185;
+        let t195 = 1.0 / (0.5 * (c_distal_leg4 * t192));
+        let minus_s_proximal_leg4 = t195 * (0.35355339059327373 * ((t81 + t9) * t192));
+        let t200 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t201 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t200 * t201;
+        let c_proximal_leg4 = t195 * (0.25 * (t192 * t192));
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t228 = s_distal_leg4 * c_proximal_leg4;
-        let t230 = 0.7071067811865475 * (t228 + c_distal_leg4);
-        let t234 = 0.7071067811865475 * (t228 - c_distal_leg4);
-        let t237 = s_distal_leg4 * t215
-            * (t214 * twist[0] + t230 * twist[1] + t234 * twist[2]);
-        let minus_rate_wrist_leg4 = t237 + 0.7071067811865475 * t209 * twist[0]
-            + 0.7071067811865475 * t197 * twist[1]
-            + 0.7071067811865475 * t196 * twist[2];
-        let minus_rate_dot_proximal_leg4 = t215
-            * (rate_distal_leg4 * t237 + rate_distal_leg4 * minus_rate_wrist_leg4);
-        let t251 = actuator_accelerations[3] + minus_rate_dot_proximal_leg4;
-        let t253 = minus_gproximal_wx_leg1 * t75 + minus_gproximal_wx_leg2 * t135
-            + minus_gproximal_wx_leg3 * t193 + minus_gproximal_wx_leg4 * t251;
-        let t260 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t214 = s_distal_leg4 * c_proximal_leg4;
+        let t216 = 0.7071067811865475 * (t214 + c_distal_leg4);
+        let t220 = 0.7071067811865475 * (t214 - c_distal_leg4);
+        let t223 = s_distal_leg4 * t201
+            * (t200 * twist[0] + t216 * twist[1] + t220 * twist[2]);
+        let minus_rate_wrist_leg4 = t223
+            + 0.7071067811865475
+                * (t81 * twist[0] + t71 * twist[1] + t73 * twist[2] + t175);
+        let minus_rate_dot_proximal_leg4 = t201
+            * (rate_distal_leg4 * t223 + rate_distal_leg4 * minus_rate_wrist_leg4);
+        let t236 = actuator_accelerations[3] + minus_rate_dot_proximal_leg4;
+        let t238 = minus_gproximal_wx_leg1 * t69 + minus_gproximal_wx_leg2 * t123
+            + minus_gproximal_wx_leg3 * t182 + minus_gproximal_wx_leg4 * t236;
+        let t245 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t260, 0.9999999999999998, "actuators")?;
-        let t261 = 1.0 / t260;
-        let minus_gproximal_wy_leg1 = t54 * t34;
-        let minus_gproximal_wy_leg2 = t114 * t99;
-        let minus_gproximal_wy_leg3 = t172 * t158;
-        let minus_gproximal_wy_leg4 = t230 * t215;
-        let t273 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t245, 0.9999999999999998, "actuators")?;
+        let t246 = 1.0 / t245;
+        let minus_gproximal_wy_leg1 = t49 * t30;
+        let minus_gproximal_wy_leg2 = t103 * t80;
+        let minus_gproximal_wy_leg3 = t157 * t143;
+        let minus_gproximal_wy_leg4 = t216 * t201;
+        let t258 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t274 = t273 * t261;
-        let t283 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        let t259 = t258 * t246;
+        let t268 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t273 * t274;
-        ::overact::guard::platform(t283, 0.9999999999999998, "actuators")?;
-        let t284 = 1.0 / t283;
-        let t293 = t253 * t274
-            - (minus_gproximal_wy_leg1 * t75 + minus_gproximal_wy_leg2 * t135
-                + minus_gproximal_wy_leg3 * t193 + minus_gproximal_wy_leg4 * t251);
-        let minus_gproximal_wz_leg3 = t176 * t158;
-        let gproximal_wz_leg1 = t58 * t34;
-        let gproximal_wz_leg2 = t118 * t99;
-        let minus_gproximal_wz_leg4 = t234 * t215;
-        let t312 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t258 * t259;
+        ::overact::guard::platform(t268, 0.9999999999999998, "actuators")?;
+        let t269 = 1.0 / t268;
+        let t278 = t238 * t259
+            - (minus_gproximal_wy_leg1 * t69 + minus_gproximal_wy_leg2 * t123
+                + minus_gproximal_wy_leg3 * t182 + minus_gproximal_wy_leg4 * t236);
+        let minus_gproximal_wz_leg3 = t161 * t143;
+        let gproximal_wz_leg1 = t53 * t30;
+        let gproximal_wz_leg2 = t107 * t80;
+        let minus_gproximal_wz_leg4 = t220 * t201;
+        let t297 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t313 = t312 * t261;
-        let t315 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t298 = t297 * t246;
+        let t300 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t273 * t313;
-        let t316 = t315 * t284;
-        let t327 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t258 * t298;
+        let t301 = t300 * t269;
+        let t312 = gproximal_wz_leg1 * t69 + gproximal_wz_leg2 * t123
+            - minus_gproximal_wz_leg3 * t182 - minus_gproximal_wz_leg4 * t236
+            + t238 * t298 - t301 * t278;
+        let t323 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t312 * t313
-            - t315 * t316;
-        ::overact::guard::platform(t327, 1.9999999999999996, "actuators")?;
-        let t338 = gproximal_wz_leg1 * t75 + gproximal_wz_leg2 * t135
-            - minus_gproximal_wz_leg3 * t193 - minus_gproximal_wz_leg4 * t251
-            + t253 * t313 - t316 * t293;
-        let t339 = t338 / t327;
-        let t341 = t284 * t293 - t316 * t339;
-        Ok([-(t253 * t261 + t274 * t341 + t313 * t339), t341, t339])
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t297 * t298
+            - t300 * t301;
+        ::overact::guard::platform(t323, 1.9999999999999996, "actuators")?;
+        let t324 = t312 / t323;
+        let t326 = t269 * t278 - t301 * t324;
+        Ok([-(t238 * t246 + t259 * t326 + t298 * t324), t326, t324])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1692,7 +1651,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 862 operations (306 additions, 548 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 694 intermediates.
+    /// 725 operations (272 additions, 449 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 557 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1715,573 +1674,529 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t33 = 0.7071067811865475 * (t31 - c_distal_leg1);
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t33 * t34;
-        let t37 = pose[2] * t6;
-        let t38 = pose[0] * t3;
-        let t39 = t37 + t38;
-        let t40 = pose[3] * t0;
-        let t41 = pose[0] * t6;
-        let t42 = t40 - t41;
-        let t43 = t39 - t42;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t43 * t27));
-        let t47 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t50 = t31 + c_distal_leg1;
-        let t51 = 0.7071067811865475 * t50;
+        let t21 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t21 * (t10 - minus_s_distal_leg1);
+        let t24 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t26 = 0.7071067811865475 * (t24 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t26 * t21;
+        let t29 = pose[2] * t6;
+        let t30 = pose[0] * t3;
+        let t31 = t29 + t30;
+        let t32 = pose[3] * t0;
+        let t33 = pose[0] * t6;
+        let t34 = t32 - t33;
+        let t35 = t31 - t34;
+        let s_proximal_leg1 = t21 * (0.7071067811865475 * t35);
+        let t38 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t41 = t24 + c_distal_leg1;
+        let t42 = 0.7071067811865475 * t41;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t60 = minus_s_distal_leg1 * t34;
-        let t65 = t33 * twist[0] + t47 * twist[1] - t51 * twist[2];
-        let t66 = t60 * t65;
-        let t67 = rate_distal_leg1 * t66;
-        let t70 = 0.7071067811865475 * t43;
-        let rate_wrist_leg1 = t66 + 0.7071067811865475 * t10 * twist[0] + t70 * twist[1]
-            + 0.7071067811865475 * t15 * twist[2];
-        let t79 = t33 * acceleration[0] + t47 * acceleration[1] - t51 * acceleration[2]
-            - (t67 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t34 * t79;
-        let t81 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t47 * t34;
-        let t83 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let gproximal_wz_leg1 = t51 * t34;
-        let t85 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t86 = 6.936717523440031 * s_proximal_leg1;
-        let t90 = 6.936717523440031 * c_proximal_leg1;
-        let t91 = minus_gproximal_wx_leg1 * t90;
-        let t92 = minus_gproximal_wy_leg1 * t90;
-        let t93 = gproximal_wz_leg1 * t90;
-        let minus_rate_proximal_leg1 = t34 * t65;
-        let t101 = t79 + t67;
-        let t103 = t65 * rate_distal_leg1;
-        let t105 = c_distal_leg1 * t101 + minus_s_distal_leg1 * t103;
-        let t107 = t65 * t66;
-        let t108 = minus_gdistal_wx_leg1 * t107;
-        let t109 = minus_gproximal_wx_leg1 * t105 + t108;
-        let t112 = minus_gproximal_wy_leg1 * t105 - c_proximal_leg1 * t107;
-        let t114 = gproximal_wz_leg1 * t105 + t108;
-        let t115 = t60 * t79;
-        let t121 = c_distal_leg1 * (t103 - (t115 - t103))
-            - minus_s_distal_leg1 * (t67 + t101);
-        let t123 = t65 * t65;
-        let t124 = t66 * t66;
-        let t125 = t123 - t124;
-        let t126 = minus_gdistal_wx_leg1 * t125;
+        let t51 = minus_s_distal_leg1 * t21;
+        let t56 = t26 * twist[0] + t38 * twist[1] - t42 * twist[2];
+        let t57 = t51 * t56;
+        let t62 = t5 * twist[0] + t31 * twist[1] + t11 * twist[2];
+        let t67 = t9 * twist[0] + t34 * twist[1] + t14 * twist[2];
+        let rate_wrist_leg1 = t57 + 0.7071067811865475 * (t62 - t67);
+        let t73 = t26 * acceleration[0] + t38 * acceleration[1] - t42 * acceleration[2]
+            - rate_distal_leg1 * (t57 + rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t21 * t73;
+        let t75 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t38 * t21;
+        let t77 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let gproximal_wz_leg1 = t42 * t21;
+        let t79 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t80 = 6.936717523440031 * s_proximal_leg1;
+        let t82 = minus_gproximal_wy_leg1 * t80;
+        let t84 = 6.936717523440031 * c_proximal_leg1;
+        let t85 = minus_gproximal_wx_leg1 * t84;
+        let t86 = minus_gproximal_wy_leg1 * t84;
+        let t87 = gproximal_wz_leg1 * t84;
+        let minus_rate_proximal_leg1 = t21 * t56;
+        let t95 = t56 * rate_distal_leg1;
+        let t96 = t51 * t73;
+        let t98 = t95 - (t96 - t95);
+        let t99 = minus_s_distal_leg1 * t98;
+        let t101 = t56 * t57;
+        let t102 = minus_gdistal_wx_leg1 * t101;
+        let t103 = minus_gproximal_wx_leg1 * t99 + t102;
+        let t107 = c_proximal_leg1 * t101 - minus_gproximal_wy_leg1 * t99;
+        let t110 = gproximal_wz_leg1 * t99 + t102;
+        let t115 = c_distal_leg1 * t98 - t51 * (minus_rate_dot_proximal_leg1 + t99);
+        let t117 = t56 * t56;
+        let t118 = t57 * t57;
+        let t119 = t117 - t118;
+        let t120 = minus_gdistal_wx_leg1 * t119;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t65 * rate_wrist_leg1;
-        let t142 = rate_distal_leg1 * rate_distal_leg1;
-        let t145 = c_distal_leg1 * (t107 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t142 - t123);
-        let t147 = minus_gdistal_wx_leg1 * t79;
-        let t161 = minus_s_distal_leg1 * (t107 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t124 - t142);
-        let t163 = minus_gdistal_wx_leg1 * t115;
-        let t170 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t172 = 6.936717523440031 * t47;
-        let t178 = 9.81 * (t70 * c_proximal_leg1 - 0.5 * (t10 * s_proximal_leg1));
-        let t188 = 4.905 * t43;
-        let t197 = t13 - t4;
-        let t198 = t197 - t42;
-        let t199 = t40 + t41;
-        let t200 = t199 - t14;
-        let t201 = t198 + t200;
-        let minus_s_distal_leg2 = 0.5 * t201;
-        let t205 = 1.0 - 0.25 * (t201 * t201);
-        ::overact::guard::reach(t205, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t205);
+            + minus_gdistal_wx_leg1 * acceleration[2] + t56 * rate_wrist_leg1;
+        let t136 = rate_distal_leg1 * rate_distal_leg1;
+        let t139 = c_distal_leg1 * (t101 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t136 - t117);
+        let t141 = minus_gdistal_wx_leg1 * t73;
+        let t152 = minus_s_distal_leg1 * (t101 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t118 - t136);
+        let t154 = minus_gdistal_wx_leg1 * t96;
+        let t161 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t163 = 6.936717523440031 * t38;
+        let t165 = t15 * (-6.936717523440031);
+        let t166 = minus_gdistal_wx_leg1 * t165;
+        let t177 = t13 - t4;
+        let t178 = t177 - t34;
+        let t179 = t32 + t33;
+        let t180 = t179 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t178 + t180);
+        let t184 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t184, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t184);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t211 = 1.0 / (0.5 * (t198 * c_distal_leg2 - t200 * c_distal_leg2));
-        let t212 = t37 - t38;
-        let t213 = t212 - t9;
-        let t214 = t198 - t200;
-        let minus_s_proximal_leg2 = t211 * (0.35355339059327373 * (t213 * t214));
-        let t218 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let t219 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t218 * t219;
-        let c_proximal_leg2 = t211 * (0.25 * (t214 * t214));
-        let t225 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t227 = 0.7071067811865475 * (t225 - c_distal_leg2);
-        let t230 = t225 + c_distal_leg2;
-        let t231 = 0.7071067811865475 * t230;
+        let t186 = 1.0 / c_distal_leg2;
+        let t187 = t29 - t30;
+        let t188 = t187 - t9;
+        let minus_s_proximal_leg2 = t186 * (0.7071067811865475 * t188);
+        let t191 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t191 * t186;
+        let c_proximal_leg2 = t186 * (t178 - minus_s_distal_leg2);
+        let t196 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t198 = 0.7071067811865475 * (t196 - c_distal_leg2);
+        let t201 = t196 + c_distal_leg2;
+        let t202 = 0.7071067811865475 * t201;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t240 = minus_s_distal_leg2 * t219;
-        let t245 = t218 * twist[0] + t227 * twist[1] - t231 * twist[2];
-        let t246 = t240 * t245;
-        let t247 = rate_distal_leg2 * t246;
-        let t248 = 0.7071067811865475 * t213;
-        let rate_wrist_leg2 = t246 + t248 * twist[0]
-            + 0.7071067811865475 * t198 * twist[1]
-            + 0.7071067811865475 * t200 * twist[2];
-        let t259 = t218 * acceleration[0] + t227 * acceleration[1]
-            - t231 * acceleration[2] - (t247 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t219 * t259;
-        let t261 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wy_leg2 = t227 * t219;
-        let t263 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wz_leg2 = t231 * t219;
-        let t265 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t266 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t270 = 6.936717523440031 * c_proximal_leg2;
-        let t271 = minus_gproximal_wx_leg2 * t270;
-        let t272 = minus_gproximal_wy_leg2 * t270;
-        let t273 = gproximal_wz_leg2 * t270;
-        let minus_rate_proximal_leg2 = t219 * t245;
-        let t281 = t259 + t247;
-        let t283 = t245 * rate_distal_leg2;
-        let t285 = c_distal_leg2 * t281 + minus_s_distal_leg2 * t283;
-        let t287 = t245 * t246;
-        let t289 = minus_gproximal_wx_leg2 * t285 + c_proximal_leg2 * t287;
-        let t291 = gdistal_wy_leg2 * t287;
-        let t292 = minus_gproximal_wy_leg2 * t285 - t291;
-        let t294 = t291 - gproximal_wz_leg2 * t285;
-        let t295 = t240 * t259;
-        let t301 = c_distal_leg2 * (t283 - (t295 - t283))
-            - minus_s_distal_leg2 * (t247 + t281);
-        let t303 = t245 * t245;
-        let t304 = t246 * t246;
-        let t305 = t303 - t304;
-        let t308 = gdistal_wy_leg2 * t305;
+        let t211 = minus_s_distal_leg2 * t186;
+        let t216 = t191 * twist[0] + t198 * twist[1] - t202 * twist[2];
+        let t217 = t211 * t216;
+        let t222 = t187 * twist[0] + t177 * twist[1] + t179 * twist[2];
+        let rate_wrist_leg2 = t217 - 0.7071067811865475 * (t67 - t222);
+        let t228 = t191 * acceleration[0] + t198 * acceleration[1]
+            - t202 * acceleration[2] - rate_distal_leg2 * (t217 + rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t186 * t228;
+        let t230 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wy_leg2 = t198 * t186;
+        let t232 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = t202 * t186;
+        let t234 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t235 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t239 = 6.936717523440031 * c_proximal_leg2;
+        let t240 = minus_gproximal_wx_leg2 * t239;
+        let t241 = minus_gproximal_wy_leg2 * t239;
+        let t242 = gproximal_wz_leg2 * t239;
+        let minus_rate_proximal_leg2 = t186 * t216;
+        let t250 = t216 * rate_distal_leg2;
+        let t251 = t211 * t228;
+        let t253 = t250 - (t251 - t250);
+        let t254 = minus_s_distal_leg2 * t253;
+        let t256 = t216 * t217;
+        let t258 = minus_gproximal_wx_leg2 * t254 + c_proximal_leg2 * t256;
+        let t260 = gdistal_wy_leg2 * t256;
+        let t262 = t260 - minus_gproximal_wy_leg2 * t254;
+        let t265 = gproximal_wz_leg2 * t254 - t260;
+        let t270 = c_distal_leg2 * t253 - t211 * (minus_rate_dot_proximal_leg2 + t254);
+        let t272 = t216 * t216;
+        let t273 = t217 * t217;
+        let t274 = t272 - t273;
+        let t277 = gdistal_wy_leg2 * t274;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t245 * rate_wrist_leg2;
-        let t322 = rate_distal_leg2 * rate_distal_leg2;
-        let t325 = c_distal_leg2 * (t287 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t322 - t303);
-        let t330 = gdistal_wy_leg2 * t259;
-        let t341 = minus_s_distal_leg2 * (t287 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t304 - t322);
-        let t345 = gdistal_wy_leg2 * t295;
-        let t351 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t352 = 6.936717523440031 * t218;
-        let t364 = 9.81
-            * (0.5 * (t198 * minus_s_proximal_leg2) - t248 * c_proximal_leg2);
-        let t368 = 4.905 * t213;
-        let t377 = t11 + t14;
-        let t378 = t5 + t9;
-        let t379 = t377 - t378;
-        let s_distal_leg3 = 0.5 * t379;
-        let t383 = 1.0 - 0.25 * (t379 * t379);
-        ::overact::guard::reach(t383, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t383);
+            + t216 * rate_wrist_leg2;
+        let t291 = rate_distal_leg2 * rate_distal_leg2;
+        let t294 = c_distal_leg2 * (t256 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t291 - t272);
+        let t299 = gdistal_wy_leg2 * t228;
+        let t307 = minus_s_distal_leg2 * (t256 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t273 - t291);
+        let t311 = gdistal_wy_leg2 * t251;
+        let t317 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t318 = 6.936717523440031 * t191;
+        let t325 = minus_gproximal_wy_leg2 * t318 - 0.7071067811865475 * t180 * t235;
+        let t326 = 6.936717523440031 * t188;
+        let t327 = t211 * t326;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t14);
+        let t335 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t335, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t335);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t389 = 1.0 / (0.5 * (t378 * c_distal_leg3 + t377 * c_distal_leg3));
-        let t390 = t378 + t377;
-        let c_proximal_leg3 = t389 * (0.25 * (t390 * t390));
-        let t394 = s_distal_leg3 * c_proximal_leg3;
-        let t396 = 0.7071067811865475 * (t394 + c_distal_leg3);
-        let t397 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = t396 * t397;
-        let t400 = t39 + t42;
-        let s_proximal_leg3 = t389 * (0.35355339059327373 * (t400 * t390));
-        let t404 = s_distal_leg3 * s_proximal_leg3;
-        let t407 = t394 - c_distal_leg3;
-        let t408 = 0.7071067811865475 * t407;
+        let t337 = 1.0 / c_distal_leg3;
+        let t338 = t11 + t14;
+        let c_proximal_leg3 = t337 * (t338 - s_distal_leg3);
+        let t341 = s_distal_leg3 * c_proximal_leg3;
+        let t343 = 0.7071067811865475 * (t341 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t343 * t337;
+        let t346 = t31 + t34;
+        let s_proximal_leg3 = t337 * (0.7071067811865475 * t346);
+        let t349 = s_distal_leg3 * s_proximal_leg3;
+        let t352 = t341 - c_distal_leg3;
+        let t353 = 0.7071067811865475 * t352;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t417 = s_distal_leg3 * t397;
-        let t422 = t396 * twist[0] + t404 * twist[1] + t408 * twist[2];
-        let t423 = t417 * t422;
-        let t424 = rate_distal_leg3 * t423;
-        let t427 = 0.7071067811865475 * t400;
-        let minus_rate_wrist_leg3 = t423 + 0.7071067811865475 * t378 * twist[0]
-            + t427 * twist[1] + 0.7071067811865475 * t377 * twist[2];
-        let t436 = t396 * acceleration[0] + t404 * acceleration[1]
-            + t408 * acceleration[2] + t424 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t397 * t436;
-        let t438 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t404 * t397;
-        let t440 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t408 * t397;
-        let t442 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t443 = 6.936717523440031 * s_proximal_leg3;
-        let t447 = 6.936717523440031 * c_proximal_leg3;
-        let t448 = minus_gproximal_wx_leg3 * t447;
-        let t449 = minus_gproximal_wy_leg3 * t447;
-        let t450 = minus_gproximal_wz_leg3 * t447;
-        let minus_rate_proximal_leg3 = t397 * t422;
-        let t458 = t422 * t423;
-        let t459 = gdistal_wx_leg3 * t458;
-        let t460 = t422 * rate_distal_leg3;
-        let t462 = t436 - t424;
-        let t464 = s_distal_leg3 * t460 - c_distal_leg3 * t462;
-        let t466 = t459 - minus_gproximal_wx_leg3 * t464;
-        let t469 = minus_gproximal_wy_leg3 * t464 + c_proximal_leg3 * t458;
-        let t471 = t459 - minus_gproximal_wz_leg3 * t464;
-        let t472 = t422 * t422;
-        let t473 = t423 * t423;
-        let t474 = t472 - t473;
-        let t475 = gdistal_wx_leg3 * t474;
-        let t476 = t417 * t436;
-        let t482 = c_distal_leg3 * (t460 + t476 + t460) + s_distal_leg3 * (t462 - t424);
-        let t490 = gdistal_wx_leg3 * t436;
-        let t491 = rate_distal_leg3 * rate_distal_leg3;
+        let t362 = s_distal_leg3 * t337;
+        let t367 = t343 * twist[0] + t349 * twist[1] + t353 * twist[2];
+        let t368 = t362 * t367;
+        let minus_rate_wrist_leg3 = t368 + 0.7071067811865475 * (t62 + t67);
+        let t374 = t343 * acceleration[0] + t349 * acceleration[1]
+            + t353 * acceleration[2] + rate_distal_leg3 * (t368 + minus_rate_wrist_leg3);
+        let minus_rate_dot_proximal_leg3 = t337 * t374;
+        let t376 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t349 * t337;
+        let t378 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t353 * t337;
+        let t380 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t381 = 6.936717523440031 * s_proximal_leg3;
+        let t383 = minus_gproximal_wy_leg3 * t381;
+        let t385 = 6.936717523440031 * c_proximal_leg3;
+        let t386 = minus_gproximal_wx_leg3 * t385;
+        let t387 = minus_gproximal_wy_leg3 * t385;
+        let t388 = minus_gproximal_wz_leg3 * t385;
+        let minus_rate_proximal_leg3 = t337 * t367;
+        let t396 = t367 * rate_distal_leg3;
+        let t397 = t362 * t374;
+        let t399 = t396 + t397 + t396;
+        let t400 = s_distal_leg3 * t399;
+        let t402 = t367 * t368;
+        let t403 = gdistal_wx_leg3 * t402;
+        let t404 = minus_gproximal_wx_leg3 * t400 - t403;
+        let t408 = minus_gproximal_wy_leg3 * t400 + c_proximal_leg3 * t402;
+        let t411 = minus_gproximal_wz_leg3 * t400 - t403;
+        let t413 = t367 * t367;
+        let t414 = t368 * t368;
+        let t415 = t413 - t414;
+        let t416 = gdistal_wx_leg3 * t415;
+        let t420 = c_distal_leg3 * t399 + t362 * (minus_rate_dot_proximal_leg3 - t400);
+        let t428 = gdistal_wx_leg3 * t374;
+        let t429 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t422 * minus_rate_wrist_leg3;
-        let t503 = s_distal_leg3 * (t491 - t472)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t458);
-        let t518 = s_distal_leg3 * (t458 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t473 - t491);
-        let t520 = gdistal_wx_leg3 * t476;
-        let t527 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t529 = 6.936717523440031 * t404;
-        let t535 = 9.81 * (t427 * c_proximal_leg3 - 0.5 * (t378 * s_proximal_leg3));
-        let t545 = 4.905 * t400;
-        let t554 = t199 + t14;
-        let t555 = t197 + t42;
-        let t556 = t554 - t555;
-        let s_distal_leg4 = 0.5 * t556;
-        let t560 = 1.0 - 0.25 * (t556 * t556);
-        ::overact::guard::reach(t560, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t560);
+            - t367 * minus_rate_wrist_leg3;
+        let t441 = s_distal_leg3 * (t429 - t413)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t402);
+        let t453 = s_distal_leg3 * (t402 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t414 - t429);
+        let t455 = gdistal_wx_leg3 * t397;
+        let t462 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t464 = 6.936717523440031 * t349;
+        let t466 = 6.936717523440031 * t338;
+        let t467 = gdistal_wx_leg3 * t466;
+        let s_distal_leg4 = minus_s_distal_leg2 + t14 - t177;
+        let t481 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t481, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t481);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t566 = 1.0 / (0.5 * (t555 * c_distal_leg4 + t554 * c_distal_leg4));
-        let t567 = t212 + t9;
-        let t568 = t555 + t554;
-        let minus_s_proximal_leg4 = t566 * (0.35355339059327373 * (t567 * t568));
-        let t572 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t573 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t572 * t573;
-        let c_proximal_leg4 = t566 * (0.25 * (t568 * t568));
-        let t579 = s_distal_leg4 * c_proximal_leg4;
-        let t581 = 0.7071067811865475 * (t579 + c_distal_leg4);
-        let t584 = t579 - c_distal_leg4;
-        let t585 = 0.7071067811865475 * t584;
+        let t483 = 1.0 / c_distal_leg4;
+        let t484 = t187 + t9;
+        let minus_s_proximal_leg4 = t483 * (0.7071067811865475 * t484);
+        let t487 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t487 * t483;
+        let t490 = t179 + t14;
+        let c_proximal_leg4 = t483 * (t490 - s_distal_leg4);
+        let t493 = s_distal_leg4 * c_proximal_leg4;
+        let t495 = 0.7071067811865475 * (t493 + c_distal_leg4);
+        let t498 = t493 - c_distal_leg4;
+        let t499 = 0.7071067811865475 * t498;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t594 = s_distal_leg4 * t573;
-        let t599 = t572 * twist[0] + t581 * twist[1] + t585 * twist[2];
-        let t600 = t594 * t599;
-        let t601 = rate_distal_leg4 * t600;
-        let t602 = 0.7071067811865475 * t567;
-        let minus_rate_wrist_leg4 = t600 + t602 * twist[0]
-            + 0.7071067811865475 * t555 * twist[1]
-            + 0.7071067811865475 * t554 * twist[2];
-        let t613 = t572 * acceleration[0] + t581 * acceleration[1]
-            + t585 * acceleration[2] + t601 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t573 * t613;
-        let t615 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t581 * t573;
-        let t617 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t585 * t573;
-        let t619 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t620 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t624 = 6.936717523440031 * c_proximal_leg4;
-        let t625 = minus_gproximal_wx_leg4 * t624;
-        let t626 = minus_gproximal_wy_leg4 * t624;
-        let t627 = minus_gproximal_wz_leg4 * t624;
-        let minus_rate_proximal_leg4 = t573 * t599;
-        let t635 = t599 * t600;
-        let t637 = t599 * rate_distal_leg4;
-        let t639 = t613 - t601;
-        let t641 = s_distal_leg4 * t637 - c_distal_leg4 * t639;
-        let t643 = c_proximal_leg4 * t635 - minus_gproximal_wx_leg4 * t641;
-        let t645 = minus_gdistal_wy_leg4 * t635;
-        let t646 = minus_gproximal_wy_leg4 * t641 + t645;
-        let t648 = minus_gproximal_wz_leg4 * t641 + t645;
-        let t649 = t599 * t599;
-        let t650 = t600 * t600;
-        let t651 = t649 - t650;
-        let t653 = t594 * t613;
-        let t659 = c_distal_leg4 * (t637 + t653 + t637) + s_distal_leg4 * (t639 - t601);
-        let t663 = minus_gdistal_wy_leg4 * t651;
-        let t668 = rate_distal_leg4 * rate_distal_leg4;
+        let t508 = s_distal_leg4 * t483;
+        let t513 = t487 * twist[0] + t495 * twist[1] + t499 * twist[2];
+        let t514 = t508 * t513;
+        let minus_rate_wrist_leg4 = t514 + 0.7071067811865475 * (t222 + t67);
+        let t520 = t487 * acceleration[0] + t495 * acceleration[1]
+            + t499 * acceleration[2] + rate_distal_leg4 * (t514 + minus_rate_wrist_leg4);
+        let minus_rate_dot_proximal_leg4 = t483 * t520;
+        let t522 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t495 * t483;
+        let t524 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t499 * t483;
+        let t526 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t527 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t531 = 6.936717523440031 * c_proximal_leg4;
+        let t532 = minus_gproximal_wx_leg4 * t531;
+        let t533 = minus_gproximal_wy_leg4 * t531;
+        let t534 = minus_gproximal_wz_leg4 * t531;
+        let minus_rate_proximal_leg4 = t483 * t513;
+        let t542 = t513 * rate_distal_leg4;
+        let t543 = t508 * t520;
+        let t545 = t542 + t543 + t542;
+        let t546 = s_distal_leg4 * t545;
+        let t548 = t513 * t514;
+        let t550 = minus_gproximal_wx_leg4 * t546 - c_proximal_leg4 * t548;
+        let t553 = minus_gdistal_wy_leg4 * t548;
+        let t554 = minus_gproximal_wy_leg4 * t546 + t553;
+        let t557 = minus_gproximal_wz_leg4 * t546 + t553;
+        let t559 = t513 * t513;
+        let t560 = t514 * t514;
+        let t561 = t559 - t560;
+        let t566 = c_distal_leg4 * t545 + t508 * (minus_rate_dot_proximal_leg4 - t546);
+        let t570 = minus_gdistal_wy_leg4 * t561;
+        let t575 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t599 * minus_rate_wrist_leg4;
-        let t680 = s_distal_leg4 * (t668 - t649)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t635);
-        let t684 = minus_gdistal_wy_leg4 * t613;
-        let t695 = s_distal_leg4 * (t635 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t650 - t668);
-        let t699 = minus_gdistal_wy_leg4 * t653;
-        let t705 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t710 = 6.936717523440031 * t572;
-        let t717 = 9.81
-            * (0.5 * (t555 * minus_s_proximal_leg4) - t602 * c_proximal_leg4);
-        let t722 = 4.905 * t567;
-        let t735 = t5 * acceleration[0] + t39 * acceleration[1] + t11 * acceleration[2];
-        let t741 = t5 * twist[0] + t39 * twist[1] + t11 * twist[2];
-        let t746 = t9 * twist[0] + t42 * twist[1] + t14 * twist[2];
-        let t747 = t741 * t746;
-        let t748 = t212 * t747;
-        let t754 = t212 * twist[0] + t197 * twist[1] + t199 * twist[2];
-        let t755 = t741 * t754;
-        let t756 = t9 * t755;
-        let t759 = t197 * t747;
-        let t761 = t42 * t755;
-        let t764 = t199 * t747;
-        let t766 = t14 * t755;
-        let t768 = t754 * t746;
-        let t769 = t768 + t735;
-        let t775 = t212 * acceleration[0] + t197 * acceleration[1]
-            + t199 * acceleration[2];
-        let t776 = t747 - t775;
-        let t779 = t741 * t741;
-        let t780 = t754 * t754;
-        let t781 = t779 - t780;
-        let t798 = t9 * acceleration[0] + t42 * acceleration[1] + t14 * acceleration[2];
-        let t799 = t755 + t798;
-        let t801 = t746 * t746;
-        let t802 = t801 - t779;
-        let t805 = t768 - t735;
-        let t819 = t5 * t768;
-        let t823 = t39 * t768;
-        let t827 = t11 * t768;
-        let t830 = t780 - t801;
-        let t832 = t755 - t798;
-        let t835 = t747 + t775;
-        let t857 = 9.81 * t199;
-        let t859 = 9.81 * t14;
-        let t866 = 9.81 * t11;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t513 * minus_rate_wrist_leg4;
+        let t587 = s_distal_leg4 * (t575 - t559)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t548);
+        let t591 = minus_gdistal_wy_leg4 * t520;
+        let t599 = s_distal_leg4 * (t548 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t560 - t575);
+        let t603 = minus_gdistal_wy_leg4 * t543;
+        let t609 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t611 = 6.936717523440031 * t487;
+        let t617 = t527 * (0.7071067811865475 * t490) + minus_gproximal_wy_leg4 * t611;
+        let t618 = 9.81 * t487;
+        let t628 = t5 * acceleration[0] + t31 * acceleration[1] + t11 * acceleration[2];
+        let t630 = t62 * t67;
+        let t631 = t187 * t630;
+        let t633 = t62 * t222;
+        let t634 = t9 * t633;
+        let t637 = t177 * t630;
+        let t639 = t34 * t633;
+        let t642 = t179 * t630;
+        let t644 = t14 * t633;
+        let t650 = t187 * acceleration[0] + t177 * acceleration[1]
+            + t179 * acceleration[2];
+        let t651 = t650 - t630;
+        let t653 = t222 * t67;
+        let t654 = t628 + t653;
+        let t657 = t62 * t62;
+        let t658 = t222 * t222;
+        let t659 = t657 - t658;
+        let t676 = t9 * acceleration[0] + t34 * acceleration[1] + t14 * acceleration[2];
+        let t677 = t676 + t633;
+        let t679 = t67 * t67;
+        let t680 = t679 - t657;
+        let t683 = t628 - t653;
+        let t697 = t5 * t653;
+        let t701 = t31 * t653;
+        let t705 = t11 * t653;
+        let t708 = t658 - t679;
+        let t710 = t676 - t633;
+        let t713 = t650 + t630;
         Ok([
             [
-                t81, minus_gproximal_wx_leg1 * t86, t91, t81,
+                t75, minus_gproximal_wx_leg1 * t80, t85, t75,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t109,
-                -(minus_gproximal_wx_leg1 * t121 + t126),
-                minus_gproximal_wx_leg1 * t145 - t147,
-                t81 - t109,
-                -(minus_gproximal_wx_leg1 * t161 + t163),
-                -t170,
-                -(minus_gproximal_wx_leg1 * t172 + t178),
-                minus_gproximal_wx_leg1 * t188 - 4.905 * (s_proximal_leg1 * t50),
-                -t91,
-                t261,
-                -(minus_gproximal_wx_leg2 * t266),
-                t271,
-                t261,
+                t75 + t103,
+                -(minus_gproximal_wx_leg1 * t115 + t120),
+                minus_gproximal_wx_leg1 * t139 - t141,
+                -t103,
+                -(minus_gproximal_wx_leg1 * t152 + t154),
+                -t161,
+                -(minus_gproximal_wx_leg1 * t163 + t166),
+                t35 * (-6.936717523440031),
+                -t85,
+                t230,
+                -(minus_gproximal_wx_leg2 * t235),
+                t240,
+                t230,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t289,
-                -(minus_gproximal_wx_leg2 * t301 + c_proximal_leg2 * t305),
-                minus_gproximal_wx_leg2 * t325 - c_proximal_leg2 * t259,
-                t261 - t289,
-                -(minus_gproximal_wx_leg2 * t341 + c_proximal_leg2 * t295),
+                t230 + t258,
+                -(minus_gproximal_wx_leg2 * t270 + c_proximal_leg2 * t274),
+                minus_gproximal_wx_leg2 * t294 - c_proximal_leg2 * t228,
+                -t258,
+                -(minus_gproximal_wx_leg2 * t307 + c_proximal_leg2 * t251),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t352
-                    - c_proximal_leg2
-                        * (c_distal_leg2 * t270 - 3.4683587617200153 * t201),
-                -(minus_gproximal_wx_leg2 * t368
-                    + c_proximal_leg2 * (6.936717523440031 * t230)),
-                -t271,
-                t438,
-                minus_gproximal_wx_leg3 * t443,
-                t448,
-                t438,
+                minus_gproximal_wx_leg2 * t318 + t180 * t239,
+                -(gdistal_wy_leg2 * t327 + t201 * t239),
+                -t240,
+                t376,
+                minus_gproximal_wx_leg3 * t381,
+                t386,
+                t376,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t466,
-                t475 - minus_gproximal_wx_leg3 * t482,
-                t490 - minus_gproximal_wx_leg3 * t503,
-                t438 - t466,
-                -(minus_gproximal_wx_leg3 * t518 + t520),
-                t527,
-                minus_gproximal_wx_leg3 * t529 + t535,
-                minus_gproximal_wx_leg3 * t545 - 4.905 * (s_proximal_leg3 * t407),
-                -t448,
-                t615,
-                -(minus_gproximal_wx_leg4 * t620),
-                t625,
-                t615,
+                t376 - t404,
+                t416 - minus_gproximal_wx_leg3 * t420,
+                t428 - minus_gproximal_wx_leg3 * t441,
+                t404,
+                -(minus_gproximal_wx_leg3 * t453 + t455),
+                t462,
+                minus_gproximal_wx_leg3 * t464 + t467,
+                6.936717523440031 * t346,
+                -t386,
+                t522,
+                -(minus_gproximal_wx_leg4 * t527),
+                t532,
+                t522,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t643,
-                c_proximal_leg4 * t651 - minus_gproximal_wx_leg4 * t659,
-                c_proximal_leg4 * t613 - minus_gproximal_wx_leg4 * t680,
-                t615 - t643,
-                -(minus_gproximal_wx_leg4 * t695 + c_proximal_leg4 * t653),
+                t522 - t550,
+                c_proximal_leg4 * t561 - minus_gproximal_wx_leg4 * t566,
+                c_proximal_leg4 * t520 - minus_gproximal_wx_leg4 * t587,
+                t550,
+                -(minus_gproximal_wx_leg4 * t599 + c_proximal_leg4 * t543),
                 c_proximal_leg4 * rate_dot_distal_leg4,
-                c_proximal_leg4 * (c_distal_leg4 * t624 + 3.4683587617200153 * t556)
-                    - minus_gproximal_wx_leg4 * t710,
-                -(minus_gproximal_wx_leg4 * t722
-                    + c_proximal_leg4 * (6.936717523440031 * t584)),
-                -t625,
-                t5 * t735 + t748 - t756,
-                t212 * t769 - t5 * t776 + t9 * t781,
-                t5 * t799 + t212 * t802 - t9 * t805,
-                t212 * t775 - t819 + t756,
-                t5 * t830 - t212 * t832 + t9 * t835,
-                t819 - t748 + t9 * t798,
-                t9 * t857 - t212 * t859,
-                t5 * t859 - t9 * t866,
-                t212 * t866 - t5 * t857,
+                t490 * t531 - minus_gproximal_wx_leg4 * t611,
+                -(minus_gdistal_wy_leg4 * t618 + t498 * t531),
+                -t532,
+                t5 * t628 + t631 - t634,
+                t5 * t651 + t187 * t654 + t9 * t659,
+                t5 * t677 + t187 * t680 + t9 * t683,
+                t187 * t650 - t697 + t634,
+                t5 * t708 + t187 * t710 + t9 * t713,
+                t697 - t631 + t9 * t676,
+                9.81 * t31,
+                9.81 * t177,
+                9.81 * t34,
             ],
             [
-                t83, minus_gproximal_wy_leg1 * t86, t92, t83,
-                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t77, t82, t86, t77, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t112,
-                c_proximal_leg1 * t125 - minus_gproximal_wy_leg1 * t121,
-                minus_gproximal_wy_leg1 * t145 + c_proximal_leg1 * t79,
-                t83 - t112,
-                c_proximal_leg1 * t115 - minus_gproximal_wy_leg1 * t161,
+                t77 - t107,
+                c_proximal_leg1 * t119 - minus_gproximal_wy_leg1 * t115,
+                minus_gproximal_wy_leg1 * t139 + c_proximal_leg1 * t73,
+                t107,
+                c_proximal_leg1 * t96 - minus_gproximal_wy_leg1 * t152,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * (c_distal_leg1 * t90 - 3.4683587617200153 * t16)
-                    - minus_gproximal_wy_leg1 * t172,
-                minus_gproximal_wy_leg1 * t188
-                    + c_proximal_leg1 * (6.936717523440031 * t50),
-                -t92,
-                t263,
-                -(minus_gproximal_wy_leg2 * t266),
-                t272,
-                t263,
+                c_proximal_leg1 * t165 - minus_gproximal_wy_leg1 * t163,
+                c_distal_leg1 * t82 + t41 * t84,
+                -t86,
+                t232,
+                -(minus_gproximal_wy_leg2 * t235),
+                t241,
+                t232,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t292,
-                t308 - minus_gproximal_wy_leg2 * t301,
-                minus_gproximal_wy_leg2 * t325 + t330,
-                t263 - t292,
-                t345 - minus_gproximal_wy_leg2 * t341,
-                t351,
-                minus_gproximal_wy_leg2 * t352 - t364,
-                4.905 * (minus_s_proximal_leg2 * t230) - minus_gproximal_wy_leg2 * t368,
-                -t272,
-                t440,
-                minus_gproximal_wy_leg3 * t443,
-                t449,
-                t440,
+                t232 - t262,
+                t277 - minus_gproximal_wy_leg2 * t270,
+                minus_gproximal_wy_leg2 * t294 + t299,
+                t262,
+                t311 - minus_gproximal_wy_leg2 * t307,
+                t317,
+                t325,
+                t326,
+                -t241,
+                t378,
+                t383,
+                t387,
+                t378,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t469,
-                -(minus_gproximal_wy_leg3 * t482 + c_proximal_leg3 * t474),
-                -(minus_gproximal_wy_leg3 * t503 + c_proximal_leg3 * t436),
-                t440 + t469,
-                c_proximal_leg3 * t476 - minus_gproximal_wy_leg3 * t518,
+                -(t408 - t378),
+                -(minus_gproximal_wy_leg3 * t420 + c_proximal_leg3 * t415),
+                -(minus_gproximal_wy_leg3 * t441 + c_proximal_leg3 * t374),
+                t408,
+                c_proximal_leg3 * t397 - minus_gproximal_wy_leg3 * t453,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t529
-                    - c_proximal_leg3
-                        * (c_distal_leg3 * t447 + 3.4683587617200153 * t379),
-                minus_gproximal_wy_leg3 * t545
-                    + c_proximal_leg3 * (6.936717523440031 * t407),
-                -t449,
-                t617,
-                -(minus_gproximal_wy_leg4 * t620),
-                t626,
-                t617,
+                minus_gproximal_wy_leg3 * t464 - c_proximal_leg3 * t466,
+                c_distal_leg3 * t383 + t352 * t385,
+                -t387,
+                t524,
+                -(minus_gproximal_wy_leg4 * t527),
+                t533,
+                t524,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                -t646,
-                -(minus_gproximal_wy_leg4 * t659 + t663),
-                -(minus_gproximal_wy_leg4 * t680 + t684),
-                t617 + t646,
-                t699 - minus_gproximal_wy_leg4 * t695,
-                -t705,
-                t717 - minus_gproximal_wy_leg4 * t710,
-                4.905 * (minus_s_proximal_leg4 * t584) - minus_gproximal_wy_leg4 * t722,
-                -t626,
-                t39 * t735 + t759 - t761,
-                t197 * t769 - t39 * t776 + t42 * t781,
-                t39 * t799 + t197 * t802 - t42 * t805,
-                t197 * t775 - t823 + t761,
-                t39 * t830 - t197 * t832 + t42 * t835,
-                t823 - t759 + t42 * t798,
-                t42 * t857 - t197 * t859,
-                t39 * t859 - t42 * t866,
-                t197 * t866 - t39 * t857,
+                -(t554 - t524),
+                -(minus_gproximal_wy_leg4 * t566 + t570),
+                -(minus_gproximal_wy_leg4 * t587 + t591),
+                t554,
+                t603 - minus_gproximal_wy_leg4 * t599,
+                -t609,
+                -t617,
+                -(6.936717523440031 * t484),
+                -t533,
+                t31 * t628 + t637 - t639,
+                t31 * t651 + t177 * t654 + t34 * t659,
+                t31 * t677 + t177 * t680 + t34 * t683,
+                t177 * t650 - t701 + t639,
+                t31 * t708 + t177 * t710 + t34 * t713,
+                t701 - t637 + t34 * t676,
+                -(9.81 * t5),
+                -(9.81 * t187),
+                -(9.81 * t9),
             ],
             [
-                -t85, -(gproximal_wz_leg1 * t86), -t93, -t85,
+                -t79, -(gproximal_wz_leg1 * t80), -t87, -t79,
                 -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -t114, gproximal_wz_leg1 * t121 + t126,
-                t147 - gproximal_wz_leg1 * t145, t114 - t85, gproximal_wz_leg1 * t161 + t163, t170,
-                gproximal_wz_leg1 * t172 + t178, 0.0, t93, -t265, gproximal_wz_leg2 * t266, -t273,
-                -t265, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -(t79 + t110), gproximal_wz_leg1 * t115 + t120,
+                t141 - gproximal_wz_leg1 * t139, t110, gproximal_wz_leg1 * t152 + t154, t161,
+                gproximal_wz_leg1 * t163 + t166, 0.0, t87, -t234, gproximal_wz_leg2 * t235, -t242,
+                -t234, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, t294, gproximal_wz_leg2 * t301 - t308,
-                -(gproximal_wz_leg2 * t325 + t330), -(t265 + t294), gproximal_wz_leg2 * t341 - t345,
-                -t351, t364 - gproximal_wz_leg2 * t352, 0.0, t273, t442,
-                minus_gproximal_wz_leg3 * t443, t450, t442,
+                gproximal_wz_leg2, -(t234 + t265), gproximal_wz_leg2 * t270 - t277,
+                -(gproximal_wz_leg2 * t294 + t299), t265, gproximal_wz_leg2 * t307 - t311, -t317,
+                -(t325 + t327), 0.0, t242, t380, minus_gproximal_wz_leg3 * t381, t388, t380,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t471,
-                t475 - minus_gproximal_wz_leg3 * t482,
-                t490 - minus_gproximal_wz_leg3 * t503,
-                t442 - t471,
-                -(minus_gproximal_wz_leg3 * t518 + t520),
-                t527,
-                minus_gproximal_wz_leg3 * t529 + t535,
+                t380 - t411,
+                t416 - minus_gproximal_wz_leg3 * t420,
+                t428 - minus_gproximal_wz_leg3 * t441,
+                t411,
+                -(minus_gproximal_wz_leg3 * t453 + t455),
+                t462,
+                minus_gproximal_wz_leg3 * t464 + t467,
                 0.0,
-                -t450,
-                t619,
-                -(minus_gproximal_wz_leg4 * t620),
-                t627,
-                t619,
+                -t388,
+                t526,
+                -(minus_gproximal_wz_leg4 * t527),
+                t534,
+                t526,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                -t648,
-                -(minus_gproximal_wz_leg4 * t659 + t663),
-                -(minus_gproximal_wz_leg4 * t680 + t684),
-                t619 + t648,
-                t699 - minus_gproximal_wz_leg4 * t695,
-                -t705,
-                t717 - minus_gproximal_wz_leg4 * t710,
+                -(t557 - t526),
+                -(minus_gproximal_wz_leg4 * t566 + t570),
+                -(minus_gproximal_wz_leg4 * t587 + t591),
+                t557,
+                t603 - minus_gproximal_wz_leg4 * t599,
+                -t609,
+                t618 - t617,
                 0.0,
-                -t627,
-                t11 * t735 + t764 - t766,
-                t199 * t769 - t11 * t776 + t14 * t781,
-                t11 * t799 + t199 * t802 - t14 * t805,
-                t199 * t775 - t827 + t766,
-                t11 * t830 - t199 * t832 + t14 * t835,
-                t827 - t764 + t14 * t798,
+                -t534,
+                t11 * t628 + t642 - t644,
+                t11 * t651 + t179 * t654 + t14 * t659,
+                t11 * t677 + t179 * t680 + t14 * t683,
+                t179 * t650 - t705 + t644,
+                t11 * t708 + t179 * t710 + t14 * t713,
+                t705 - t642 + t14 * t676,
                 0.0,
                 0.0,
                 0.0,
@@ -2299,7 +2214,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 742 operations (270 additions, 468 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 586 intermediates.
+    /// 707 operations (256 additions, 447 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 551 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2336,514 +2251,511 @@ impl Spherical4Rrr {
         let t23 = c_distal_leg1 * t8;
         let t28 = t10 * twist[2] - (t7 * twist[0] + t13 * twist[1]);
         let t29 = t23 * t28;
-        let t30 = rate_distal_leg1 * t29;
-        let t31 = 0.7071067811865476 * c_distal_leg1;
-        let t32 = minus_s_distal_leg1 * t4;
-        let t33 = t31 - t32;
-        let t35 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t38 = t32 + t31;
-        let minus_rate_wrist_leg1 = t29 + t33 * twist[0] - t35 * twist[1]
-            + t38 * twist[2];
-        let t44 = t10 * acceleration[2] - (t7 * acceleration[0] + t13 * acceleration[1])
-            + t30 + rate_distal_leg1 * minus_rate_wrist_leg1;
-        let minus_rate_dot_proximal_leg1 = t8 * t44;
-        let t46 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let t30 = 0.7071067811865476 * c_distal_leg1;
+        let t31 = minus_s_distal_leg1 * t4;
+        let t32 = t30 - t31;
+        let t34 = minus_s_proximal_leg1 * minus_s_distal_leg1;
+        let t37 = t31 + t30;
+        let minus_rate_wrist_leg1 = t29 + t32 * twist[0] - t34 * twist[1]
+            + t37 * twist[2];
+        let t43 = t10 * acceleration[2] - (t7 * acceleration[0] + t13 * acceleration[1])
+            + rate_distal_leg1 * (t29 + minus_rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t8 * t43;
+        let t45 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
         let gproximal_wy_leg1 = t13 * t8;
-        let t48 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let t47 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
         let minus_gproximal_wz_leg1 = t10 * t8;
-        let t50 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t51 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t55 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t56 = gproximal_wx_leg1 * t55;
-        let t57 = gproximal_wy_leg1 * t55;
-        let t58 = minus_gproximal_wz_leg1 * t55;
+        let t49 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t50 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t54 = 6.9367175234400325 * minus_c_proximal_leg1;
+        let t55 = gproximal_wx_leg1 * t54;
+        let t56 = gproximal_wy_leg1 * t54;
+        let t57 = minus_gproximal_wz_leg1 * t54;
         let minus_rate_proximal_leg1 = t8 * t28;
-        let t66 = t28 * rate_distal_leg1;
-        let t68 = t44 - t30;
-        let t70 = c_distal_leg1 * t66 - minus_s_distal_leg1 * t68;
-        let t72 = t28 * t29;
-        let t73 = minus_gdistal_wx_leg1 * t72;
-        let t74 = gproximal_wx_leg1 * t70 - t73;
-        let t77 = gproximal_wy_leg1 * t70 + minus_c_proximal_leg1 * t72;
-        let t79 = t73 - minus_gproximal_wz_leg1 * t70;
-        let t80 = t23 * t44;
-        let t86 = minus_s_distal_leg1 * (t66 + t80 + t66) + c_distal_leg1 * (t68 - t30);
-        let t88 = t28 * t28;
-        let t89 = t29 * t29;
-        let t90 = t88 - t89;
-        let t91 = minus_gdistal_wx_leg1 * t90;
-        let t98 = rate_distal_leg1 * rate_distal_leg1;
+        let t65 = t28 * t29;
+        let t66 = minus_gdistal_wx_leg1 * t65;
+        let t67 = t28 * rate_distal_leg1;
+        let t68 = t23 * t43;
+        let t70 = t67 + t68 + t67;
+        let t71 = c_distal_leg1 * t70;
+        let t73 = t66 - gproximal_wx_leg1 * t71;
+        let t77 = gproximal_wy_leg1 * t71 + minus_c_proximal_leg1 * t65;
+        let t80 = minus_gproximal_wz_leg1 * t71 - t66;
+        let t85 = minus_s_distal_leg1 * t70 + t23 * (minus_rate_dot_proximal_leg1 - t71);
+        let t87 = t28 * t28;
+        let t88 = t29 * t29;
+        let t89 = t87 - t88;
+        let t90 = minus_gdistal_wx_leg1 * t89;
+        let t97 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
             + minus_gdistal_wx_leg1 * acceleration[2] - t28 * minus_rate_wrist_leg1;
-        let t110 = c_distal_leg1 * (t98 - t88)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t72);
-        let t112 = minus_gdistal_wx_leg1 * t44;
-        let t126 = c_distal_leg1 * (t72 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t89 - t98);
-        let t128 = minus_gdistal_wx_leg1 * t80;
-        let t135 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t137 = c_distal_leg1 * t51;
-        let t140 = 6.9367175234400325 * (minus_s_proximal_leg1 * t38);
-        let t154 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t155 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t154 * t155;
-        let t158 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t159 = c_distal_leg2 * t158;
-        let t160 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t161 = t159 + t160;
-        let t164 = t159 - t160;
+        let t109 = c_distal_leg1 * (t97 - t87)
+            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t65);
+        let t111 = minus_gdistal_wx_leg1 * t43;
+        let t122 = c_distal_leg1 * (t65 + rate_dot_distal_leg1)
+            - minus_s_distal_leg1 * (t88 - t97);
+        let t124 = minus_gdistal_wx_leg1 * t68;
+        let t131 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t133 = c_distal_leg1 * t50;
+        let t135 = 9.81 * t37;
+        let t136 = minus_gdistal_wx_leg1 * t135;
+        let t149 = minus_s_proximal_leg2 * c_distal_leg2;
+        let t150 = 1.0 / minus_s_distal_leg2;
+        let minus_gproximal_wx_leg2 = t149 * t150;
+        let t153 = 0.7071067811865476 * minus_c_proximal_leg2;
+        let t154 = c_distal_leg2 * t153;
+        let t155 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t156 = t154 + t155;
+        let t159 = t154 - t155;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t173 = c_distal_leg2 * t155;
-        let t178 = t154 * twist[0] - t161 * twist[1] + t164 * twist[2];
-        let t179 = t173 * t178;
-        let t180 = rate_distal_leg2 * t179;
-        let t181 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t183 = 0.7071067811865476 * c_distal_leg2;
-        let t184 = minus_s_distal_leg2 * t158;
-        let t185 = t183 - t184;
-        let t188 = t184 + t183;
-        let minus_rate_wrist_leg2 = t179 + t181 * twist[0] + t185 * twist[1]
-            + t188 * twist[2];
-        let t194 = t154 * acceleration[0] - t161 * acceleration[1]
-            + t164 * acceleration[2] + t180 + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let minus_rate_dot_proximal_leg2 = t155 * t194;
-        let t196 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wy_leg2 = t161 * t155;
-        let t198 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wz_leg2 = t164 * t155;
-        let t200 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t201 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t205 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t206 = minus_gproximal_wx_leg2 * t205;
-        let t207 = gproximal_wy_leg2 * t205;
-        let t208 = minus_gproximal_wz_leg2 * t205;
-        let minus_rate_proximal_leg2 = t155 * t178;
-        let t216 = t178 * rate_distal_leg2;
-        let t218 = t194 - t180;
-        let t220 = c_distal_leg2 * t216 - minus_s_distal_leg2 * t218;
-        let t222 = t178 * t179;
-        let t224 = minus_gproximal_wx_leg2 * t220 + minus_c_proximal_leg2 * t222;
-        let t226 = minus_gdistal_wy_leg2 * t222;
-        let t227 = gproximal_wy_leg2 * t220 - t226;
-        let t229 = t226 - minus_gproximal_wz_leg2 * t220;
-        let t230 = t173 * t194;
-        let t236 = minus_s_distal_leg2 * (t216 + t230 + t216)
-            + c_distal_leg2 * (t218 - t180);
-        let t238 = t178 * t178;
-        let t239 = t179 * t179;
-        let t240 = t238 - t239;
-        let t244 = minus_gdistal_wy_leg2 * t240;
-        let t248 = rate_distal_leg2 * rate_distal_leg2;
+        let t168 = c_distal_leg2 * t150;
+        let t173 = t149 * twist[0] - t156 * twist[1] + t159 * twist[2];
+        let t174 = t168 * t173;
+        let t175 = minus_s_proximal_leg2 * minus_s_distal_leg2;
+        let t177 = 0.7071067811865476 * c_distal_leg2;
+        let t178 = minus_s_distal_leg2 * t153;
+        let t179 = t177 - t178;
+        let t182 = t178 + t177;
+        let minus_rate_wrist_leg2 = t174 + t175 * twist[0] + t179 * twist[1]
+            + t182 * twist[2];
+        let t188 = t149 * acceleration[0] - t156 * acceleration[1]
+            + t159 * acceleration[2] + rate_distal_leg2 * (t174 + minus_rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t150 * t188;
+        let t190 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wy_leg2 = t156 * t150;
+        let t192 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = t159 * t150;
+        let t194 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t195 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t199 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let t200 = minus_gproximal_wx_leg2 * t199;
+        let t201 = gproximal_wy_leg2 * t199;
+        let t202 = minus_gproximal_wz_leg2 * t199;
+        let minus_rate_proximal_leg2 = t150 * t173;
+        let t210 = t173 * rate_distal_leg2;
+        let t211 = t168 * t188;
+        let t213 = t210 + t211 + t210;
+        let t214 = c_distal_leg2 * t213;
+        let t216 = t173 * t174;
+        let t218 = minus_gproximal_wx_leg2 * t214 + minus_c_proximal_leg2 * t216;
+        let t220 = minus_gdistal_wy_leg2 * t216;
+        let t222 = t220 - gproximal_wy_leg2 * t214;
+        let t225 = minus_gproximal_wz_leg2 * t214 - t220;
+        let t230 = minus_s_distal_leg2 * t213
+            + t168 * (minus_rate_dot_proximal_leg2 - t214);
+        let t232 = t173 * t173;
+        let t233 = t174 * t174;
+        let t234 = t232 - t233;
+        let t238 = minus_gdistal_wy_leg2 * t234;
+        let t242 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t178 * minus_rate_wrist_leg2;
-        let t260 = c_distal_leg2 * (t248 - t238)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t222);
-        let t265 = minus_gdistal_wy_leg2 * t194;
-        let t277 = c_distal_leg2 * (t222 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t239 - t248);
-        let t281 = minus_gdistal_wy_leg2 * t230;
-        let t286 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t287 = c_distal_leg2 * t201;
-        let t294 = 6.9367175234400325 * (minus_s_proximal_leg2 * t188);
-        let t304 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t305 = c_distal_leg3 * t304;
-        let t306 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t307 = t305 + t306;
-        let t308 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t307 * t308;
-        let t311 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t314 = t305 - t306;
+            - t173 * minus_rate_wrist_leg2;
+        let t254 = c_distal_leg2 * (t242 - t232)
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t216);
+        let t259 = minus_gdistal_wy_leg2 * t188;
+        let t268 = c_distal_leg2 * (t216 + rate_dot_distal_leg2)
+            - minus_s_distal_leg2 * (t233 - t242);
+        let t272 = minus_gdistal_wy_leg2 * t211;
+        let t277 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t278 = c_distal_leg2 * t195;
+        let t280 = 9.81 * t182;
+        let t284 = minus_gdistal_wy_leg2 * t280;
+        let t294 = 0.7071067811865476 * minus_c_proximal_leg3;
+        let t295 = c_distal_leg3 * t294;
+        let t296 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t297 = t295 + t296;
+        let t298 = 1.0 / minus_s_distal_leg3;
+        let minus_gproximal_wx_leg3 = t297 * t298;
+        let t301 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t304 = t295 - t296;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t323 = c_distal_leg3 * t308;
-        let t328 = t307 * twist[0] + t311 * twist[1] + t314 * twist[2];
-        let t329 = t323 * t328;
-        let t330 = rate_distal_leg3 * t329;
-        let t331 = minus_s_distal_leg3 * t304;
-        let t332 = 0.7071067811865476 * c_distal_leg3;
-        let t333 = t331 - t332;
-        let t335 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t338 = t331 + t332;
-        let minus_rate_wrist_leg3 = t329 + t333 * twist[0] + t335 * twist[1]
-            + t338 * twist[2];
-        let t344 = t307 * acceleration[0] + t311 * acceleration[1]
-            + t314 * acceleration[2] + t330 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t308 * t344;
-        let t346 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t311 * t308;
-        let t348 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t314 * t308;
-        let t350 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t351 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t355 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t356 = minus_gproximal_wx_leg3 * t355;
-        let t357 = minus_gproximal_wy_leg3 * t355;
-        let t358 = minus_gproximal_wz_leg3 * t355;
-        let minus_rate_proximal_leg3 = t308 * t328;
-        let t366 = t328 * t329;
-        let t367 = gdistal_wx_leg3 * t366;
-        let t368 = t328 * rate_distal_leg3;
-        let t370 = t344 - t330;
-        let t372 = c_distal_leg3 * t368 - minus_s_distal_leg3 * t370;
-        let t374 = t367 - minus_gproximal_wx_leg3 * t372;
-        let t377 = minus_gproximal_wy_leg3 * t372 + minus_c_proximal_leg3 * t366;
-        let t379 = t367 - minus_gproximal_wz_leg3 * t372;
-        let t380 = t328 * t328;
-        let t381 = t329 * t329;
-        let t382 = t380 - t381;
-        let t383 = gdistal_wx_leg3 * t382;
-        let t384 = t323 * t344;
-        let t390 = minus_s_distal_leg3 * (t368 + t384 + t368)
-            + c_distal_leg3 * (t370 - t330);
-        let t398 = gdistal_wx_leg3 * t344;
-        let t399 = rate_distal_leg3 * rate_distal_leg3;
+        let t313 = c_distal_leg3 * t298;
+        let t318 = t297 * twist[0] + t301 * twist[1] + t304 * twist[2];
+        let t319 = t313 * t318;
+        let t320 = minus_s_distal_leg3 * t294;
+        let t321 = 0.7071067811865476 * c_distal_leg3;
+        let t322 = t320 - t321;
+        let t324 = minus_s_proximal_leg3 * minus_s_distal_leg3;
+        let t327 = t320 + t321;
+        let minus_rate_wrist_leg3 = t319 + t322 * twist[0] + t324 * twist[1]
+            + t327 * twist[2];
+        let t333 = t297 * acceleration[0] + t301 * acceleration[1]
+            + t304 * acceleration[2] + rate_distal_leg3 * (t319 + minus_rate_wrist_leg3);
+        let minus_rate_dot_proximal_leg3 = t298 * t333;
+        let t335 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t301 * t298;
+        let t337 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t304 * t298;
+        let t339 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t340 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t344 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let t345 = minus_gproximal_wx_leg3 * t344;
+        let t346 = minus_gproximal_wy_leg3 * t344;
+        let t347 = minus_gproximal_wz_leg3 * t344;
+        let minus_rate_proximal_leg3 = t298 * t318;
+        let t355 = t318 * rate_distal_leg3;
+        let t356 = t313 * t333;
+        let t358 = t355 + t356 + t355;
+        let t359 = c_distal_leg3 * t358;
+        let t361 = t318 * t319;
+        let t362 = gdistal_wx_leg3 * t361;
+        let t363 = minus_gproximal_wx_leg3 * t359 - t362;
+        let t367 = minus_gproximal_wy_leg3 * t359 + minus_c_proximal_leg3 * t361;
+        let t370 = minus_gproximal_wz_leg3 * t359 - t362;
+        let t372 = t318 * t318;
+        let t373 = t319 * t319;
+        let t374 = t372 - t373;
+        let t375 = gdistal_wx_leg3 * t374;
+        let t379 = minus_s_distal_leg3 * t358
+            + t313 * (minus_rate_dot_proximal_leg3 - t359);
+        let t387 = gdistal_wx_leg3 * t333;
+        let t388 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t328 * minus_rate_wrist_leg3;
-        let t411 = c_distal_leg3 * (t399 - t380)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t366);
-        let t426 = c_distal_leg3 * (t366 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t381 - t399);
-        let t428 = gdistal_wx_leg3 * t384;
-        let t435 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t437 = c_distal_leg3 * t351;
-        let t440 = 6.9367175234400325 * (minus_s_proximal_leg3 * t338);
-        let t454 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t455 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t454 * t455;
-        let t457 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t458 = c_distal_leg4 * t457;
-        let t459 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t460 = t458 + t459;
-        let t464 = t458 - t459;
+            - t318 * minus_rate_wrist_leg3;
+        let t400 = c_distal_leg3 * (t388 - t372)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t361);
+        let t412 = c_distal_leg3 * (t361 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t373 - t388);
+        let t414 = gdistal_wx_leg3 * t356;
+        let t421 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t423 = c_distal_leg3 * t340;
+        let t425 = 9.81 * t327;
+        let t426 = gdistal_wx_leg3 * t425;
+        let t439 = minus_s_proximal_leg4 * c_distal_leg4;
+        let t440 = 1.0 / minus_s_distal_leg4;
+        let gproximal_wx_leg4 = t439 * t440;
+        let t442 = 0.7071067811865476 * minus_c_proximal_leg4;
+        let t443 = c_distal_leg4 * t442;
+        let t444 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t445 = t443 + t444;
+        let t449 = t443 - t444;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t473 = c_distal_leg4 * t455;
-        let t478 = t460 * twist[1] - t454 * twist[0] + t464 * twist[2];
-        let t479 = t473 * t478;
-        let t480 = rate_distal_leg4 * t479;
-        let t481 = minus_s_distal_leg4 * t457;
-        let t482 = 0.7071067811865476 * c_distal_leg4;
-        let t483 = t481 - t482;
-        let t485 = minus_s_proximal_leg4 * minus_s_distal_leg4;
-        let t488 = t481 + t482;
-        let minus_rate_wrist_leg4 = t479 + t483 * twist[1] - t485 * twist[0]
-            + t488 * twist[2];
-        let t494 = t460 * acceleration[1] - t454 * acceleration[0]
-            + t464 * acceleration[2] + t480 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t455 * t494;
-        let t496 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t460 * t455;
-        let t498 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t464 * t455;
-        let t500 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t501 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t505 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t506 = gproximal_wx_leg4 * t505;
-        let t507 = minus_gproximal_wy_leg4 * t505;
-        let t508 = minus_gproximal_wz_leg4 * t505;
-        let minus_rate_proximal_leg4 = t455 * t478;
-        let t516 = t478 * rate_distal_leg4;
-        let t518 = t494 - t480;
-        let t520 = c_distal_leg4 * t516 - minus_s_distal_leg4 * t518;
-        let t522 = t478 * t479;
-        let t524 = gproximal_wx_leg4 * t520 + minus_c_proximal_leg4 * t522;
-        let t525 = gdistal_wy_leg4 * t522;
-        let t527 = t525 - minus_gproximal_wy_leg4 * t520;
-        let t529 = t525 - minus_gproximal_wz_leg4 * t520;
-        let t530 = t473 * t494;
-        let t536 = minus_s_distal_leg4 * (t516 + t530 + t516)
-            + c_distal_leg4 * (t518 - t480);
-        let t538 = t478 * t478;
-        let t539 = t479 * t479;
-        let t540 = t538 - t539;
-        let t543 = gdistal_wy_leg4 * t540;
-        let t548 = rate_distal_leg4 * rate_distal_leg4;
+        let t458 = c_distal_leg4 * t440;
+        let t463 = t445 * twist[1] - t439 * twist[0] + t449 * twist[2];
+        let t464 = t458 * t463;
+        let t465 = minus_s_distal_leg4 * t442;
+        let t466 = 0.7071067811865476 * c_distal_leg4;
+        let t467 = t465 - t466;
+        let t469 = minus_s_proximal_leg4 * minus_s_distal_leg4;
+        let t472 = t465 + t466;
+        let minus_rate_wrist_leg4 = t464 + t467 * twist[1] - t469 * twist[0]
+            + t472 * twist[2];
+        let t478 = t445 * acceleration[1] - t439 * acceleration[0]
+            + t449 * acceleration[2] + rate_distal_leg4 * (t464 + minus_rate_wrist_leg4);
+        let minus_rate_dot_proximal_leg4 = t440 * t478;
+        let t480 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t445 * t440;
+        let t482 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t449 * t440;
+        let t484 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t485 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t489 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let t490 = gproximal_wx_leg4 * t489;
+        let t491 = minus_gproximal_wy_leg4 * t489;
+        let t492 = minus_gproximal_wz_leg4 * t489;
+        let minus_rate_proximal_leg4 = t440 * t463;
+        let t500 = t463 * rate_distal_leg4;
+        let t501 = t458 * t478;
+        let t503 = t500 + t501 + t500;
+        let t504 = c_distal_leg4 * t503;
+        let t506 = t463 * t464;
+        let t508 = gproximal_wx_leg4 * t504 + minus_c_proximal_leg4 * t506;
+        let t511 = gdistal_wy_leg4 * t506;
+        let t512 = minus_gproximal_wy_leg4 * t504 - t511;
+        let t515 = minus_gproximal_wz_leg4 * t504 - t511;
+        let t520 = minus_s_distal_leg4 * t503
+            + t458 * (minus_rate_dot_proximal_leg4 - t504);
+        let t522 = t463 * t463;
+        let t523 = t464 * t464;
+        let t524 = t522 - t523;
+        let t527 = gdistal_wy_leg4 * t524;
+        let t532 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t478 * minus_rate_wrist_leg4;
-        let t560 = c_distal_leg4 * (t548 - t538)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t522);
-        let t564 = gdistal_wy_leg4 * t494;
-        let t576 = c_distal_leg4 * (t522 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t539 - t548);
-        let t581 = gdistal_wy_leg4 * t530;
-        let t586 = gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t589 = c_distal_leg4 * t501;
-        let t594 = 6.9367175234400325 * (minus_s_proximal_leg4 * t488);
-        let t600 = 2.0 * pose[2];
-        let t601 = pose[2] * t600;
-        let t603 = 2.0 * pose[3];
-        let t604 = pose[3] * t603;
-        let t605 = 1.0 - t601 - t604;
-        let t607 = 2.0 * pose[1];
-        let t608 = pose[2] * t607;
-        let t609 = pose[0] * t603;
-        let t610 = t608 + t609;
-        let t613 = pose[3] * t607;
-        let t614 = pose[0] * t600;
-        let t615 = t613 - t614;
-        let t617 = t605 * acceleration[0] + t610 * acceleration[1]
-            + t615 * acceleration[2];
-        let t619 = t608 - t609;
-        let t624 = t605 * twist[0] + t610 * twist[1] + t615 * twist[2];
-        let t625 = t613 + t614;
-        let t627 = pose[3] * t600;
-        let t628 = pose[0] * t607;
-        let t629 = t627 - t628;
-        let t633 = 1.0 - pose[1] * t607;
-        let t634 = t633 - t601;
-        let t636 = t625 * twist[0] + t629 * twist[1] + t634 * twist[2];
-        let t637 = t624 * t636;
-        let t638 = t619 * t637;
-        let t641 = t633 - t604;
-        let t644 = t627 + t628;
-        let t646 = t619 * twist[0] + t641 * twist[1] + t644 * twist[2];
-        let t647 = t624 * t646;
-        let t648 = t625 * t647;
-        let t651 = t641 * t637;
-        let t653 = t629 * t647;
-        let t656 = t644 * t637;
-        let t658 = t634 * t647;
-        let t660 = t646 * t636;
-        let t661 = t660 + t617;
-        let t667 = t619 * acceleration[0] + t641 * acceleration[1]
-            + t644 * acceleration[2];
-        let t668 = t637 - t667;
-        let t671 = t624 * t624;
-        let t672 = t646 * t646;
-        let t673 = t671 - t672;
-        let t690 = t625 * acceleration[0] + t629 * acceleration[1]
-            + t634 * acceleration[2];
-        let t691 = t647 + t690;
-        let t693 = t636 * t636;
-        let t694 = t693 - t671;
-        let t697 = t660 - t617;
-        let t711 = t605 * t660;
-        let t715 = t610 * t660;
-        let t719 = t615 * t660;
-        let t722 = t672 - t693;
-        let t724 = t647 - t690;
-        let t727 = t637 + t667;
-        let t749 = 9.81 * t644;
-        let t751 = 9.81 * t634;
-        let t758 = 9.81 * t615;
+            - t463 * minus_rate_wrist_leg4;
+        let t544 = c_distal_leg4 * (t532 - t522)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t506);
+        let t548 = gdistal_wy_leg4 * t478;
+        let t557 = c_distal_leg4 * (t506 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t523 - t532);
+        let t562 = gdistal_wy_leg4 * t501;
+        let t567 = gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t568 = 9.81 * t472;
+        let t570 = c_distal_leg4 * t485;
+        let t574 = gdistal_wy_leg4 * t568;
+        let t580 = 2.0 * pose[2];
+        let t581 = pose[2] * t580;
+        let t583 = 2.0 * pose[3];
+        let t584 = pose[3] * t583;
+        let t585 = 1.0 - t581 - t584;
+        let t587 = 2.0 * pose[1];
+        let t588 = pose[2] * t587;
+        let t589 = pose[0] * t583;
+        let t590 = t588 + t589;
+        let t593 = pose[3] * t587;
+        let t594 = pose[0] * t580;
+        let t595 = t593 - t594;
+        let t597 = t585 * acceleration[0] + t590 * acceleration[1]
+            + t595 * acceleration[2];
+        let t599 = t588 - t589;
+        let t604 = t585 * twist[0] + t590 * twist[1] + t595 * twist[2];
+        let t605 = t593 + t594;
+        let t607 = pose[3] * t580;
+        let t608 = pose[0] * t587;
+        let t609 = t607 - t608;
+        let t613 = 1.0 - pose[1] * t587;
+        let t614 = t613 - t581;
+        let t616 = t605 * twist[0] + t609 * twist[1] + t614 * twist[2];
+        let t617 = t604 * t616;
+        let t618 = t599 * t617;
+        let t621 = t613 - t584;
+        let t624 = t607 + t608;
+        let t626 = t599 * twist[0] + t621 * twist[1] + t624 * twist[2];
+        let t627 = t604 * t626;
+        let t628 = t605 * t627;
+        let t631 = t621 * t617;
+        let t633 = t609 * t627;
+        let t636 = t624 * t617;
+        let t638 = t614 * t627;
+        let t644 = t599 * acceleration[0] + t621 * acceleration[1]
+            + t624 * acceleration[2];
+        let t645 = t644 - t617;
+        let t647 = t626 * t616;
+        let t648 = t597 + t647;
+        let t651 = t604 * t604;
+        let t652 = t626 * t626;
+        let t653 = t651 - t652;
+        let t670 = t605 * acceleration[0] + t609 * acceleration[1]
+            + t614 * acceleration[2];
+        let t671 = t670 + t627;
+        let t673 = t616 * t616;
+        let t674 = t673 - t651;
+        let t677 = t597 - t647;
+        let t691 = t585 * t647;
+        let t695 = t590 * t647;
+        let t699 = t595 * t647;
+        let t702 = t652 - t673;
+        let t704 = t670 - t627;
+        let t707 = t644 + t617;
         Ok([
             [
-                -t46, -(gproximal_wx_leg1 * t51), -t56, -t46,
+                -t45, -(gproximal_wx_leg1 * t50), -t55, -t45,
                 -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
-                gproximal_wx_leg1, t74, gproximal_wx_leg1 * t86 - t91,
-                gproximal_wx_leg1 * t110 - t112, -(t46 + t74), gproximal_wx_leg1 * t126 + t128,
-                -t135, -(gproximal_wx_leg1 * t137 + t140), -(9.81 * t35), t56, t196,
-                minus_gproximal_wx_leg2 * t201, t206, t196,
+                gproximal_wx_leg1, -(t45 + t73), gproximal_wx_leg1 * t85 - t90,
+                gproximal_wx_leg1 * t109 - t111, t73, gproximal_wx_leg1 * t122 + t124, -t131,
+                -(gproximal_wx_leg1 * t133 + t136), -(9.81 * t34), t55, t190,
+                minus_gproximal_wx_leg2 * t195, t200, t190,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                -t224,
-                -(minus_gproximal_wx_leg2 * t236 + minus_c_proximal_leg2 * t240),
-                -(minus_gproximal_wx_leg2 * t260 + minus_c_proximal_leg2 * t194),
-                t196 + t224,
-                minus_c_proximal_leg2 * t230 - minus_gproximal_wx_leg2 * t277,
+                -(t218 - t190),
+                -(minus_gproximal_wx_leg2 * t230 + minus_c_proximal_leg2 * t234),
+                -(minus_gproximal_wx_leg2 * t254 + minus_c_proximal_leg2 * t188),
+                t218,
+                minus_c_proximal_leg2 * t211 - minus_gproximal_wx_leg2 * t268,
                 -(minus_c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t287 - minus_c_proximal_leg2 * (9.81 * t188),
-                9.81 * t185,
-                -t206,
-                t346,
-                minus_gproximal_wx_leg3 * t351,
-                t356,
-                t346,
+                minus_gproximal_wx_leg2 * t278 - minus_c_proximal_leg2 * t280,
+                9.81 * t179,
+                -t200,
+                t335,
+                minus_gproximal_wx_leg3 * t340,
+                t345,
+                t335,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t374,
-                t383 - minus_gproximal_wx_leg3 * t390,
-                t398 - minus_gproximal_wx_leg3 * t411,
-                t346 - t374,
-                -(minus_gproximal_wx_leg3 * t426 + t428),
-                t435,
-                minus_gproximal_wx_leg3 * t437 + t440,
-                9.81 * t335,
-                -t356,
-                -t496,
-                -(gproximal_wx_leg4 * t501),
-                -t506,
-                -t496,
+                t335 - t363,
+                t375 - minus_gproximal_wx_leg3 * t379,
+                t387 - minus_gproximal_wx_leg3 * t400,
+                t363,
+                -(minus_gproximal_wx_leg3 * t412 + t414),
+                t421,
+                minus_gproximal_wx_leg3 * t423 + t426,
+                9.81 * t324,
+                -t345,
+                -t480,
+                -(gproximal_wx_leg4 * t485),
+                -t490,
+                -t480,
                 -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
                 -::overact::math::signed(gproximal_wx_leg4, minus_rate_proximal_leg4),
                 gproximal_wx_leg4,
-                t524,
-                gproximal_wx_leg4 * t536 + minus_c_proximal_leg4 * t540,
-                gproximal_wx_leg4 * t560 + minus_c_proximal_leg4 * t494,
-                -(t496 + t524),
-                gproximal_wx_leg4 * t576 - minus_c_proximal_leg4 * t530,
+                t508 - t480,
+                gproximal_wx_leg4 * t520 + minus_c_proximal_leg4 * t524,
+                gproximal_wx_leg4 * t544 + minus_c_proximal_leg4 * t478,
+                -t508,
+                gproximal_wx_leg4 * t557 - minus_c_proximal_leg4 * t501,
                 minus_c_proximal_leg4 * rate_dot_distal_leg4,
-                minus_c_proximal_leg4 * (9.81 * t488) - gproximal_wx_leg4 * t589,
-                9.81 * t483,
-                t506,
-                t605 * t617 + t638 - t648,
-                t619 * t661 - t605 * t668 + t625 * t673,
-                t605 * t691 + t619 * t694 - t625 * t697,
-                t619 * t667 - t711 + t648,
-                t605 * t722 - t619 * t724 + t625 * t727,
-                t711 - t638 + t625 * t690,
-                t625 * t749 - t619 * t751,
-                t605 * t751 - t625 * t758,
-                t619 * t758 - t605 * t749,
+                minus_c_proximal_leg4 * t568 - gproximal_wx_leg4 * t570,
+                9.81 * t467,
+                t490,
+                t585 * t597 + t618 - t628,
+                t585 * t645 + t599 * t648 + t605 * t653,
+                t585 * t671 + t599 * t674 + t605 * t677,
+                t599 * t644 - t691 + t628,
+                t585 * t702 + t599 * t704 + t605 * t707,
+                t691 - t618 + t605 * t670,
+                9.81 * t590,
+                9.81 * t621,
+                9.81 * t609,
             ],
             [
-                -t48, -(gproximal_wy_leg1 * t51), -t57, -t48,
+                -t47, -(gproximal_wy_leg1 * t50), -t56, -t47,
                 -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wy_leg1, minus_rate_proximal_leg1),
-                gproximal_wy_leg1, t77, gproximal_wy_leg1 * t86 + minus_c_proximal_leg1 * t90,
-                gproximal_wy_leg1 * t110 + minus_c_proximal_leg1 * t44, -(t48 + t77),
-                gproximal_wy_leg1 * t126 - minus_c_proximal_leg1 * t80,
+                gproximal_wy_leg1, t77 - t47, gproximal_wy_leg1 * t85 + minus_c_proximal_leg1 * t89,
+                gproximal_wy_leg1 * t109 + minus_c_proximal_leg1 * t43, -t77,
+                gproximal_wy_leg1 * t122 - minus_c_proximal_leg1 * t68,
                 minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                minus_c_proximal_leg1 * (9.81 * t38) - gproximal_wy_leg1 * t137, -(9.81 * t33), t57,
-                -t198, -(gproximal_wy_leg2 * t201), -t207, -t198,
+                minus_c_proximal_leg1 * t135 - gproximal_wy_leg1 * t133, -(9.81 * t32), t56, -t192,
+                -(gproximal_wy_leg2 * t195), -t201, -t192,
                 -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wy_leg2, minus_rate_proximal_leg2),
-                gproximal_wy_leg2, t227, gproximal_wy_leg2 * t236 - t244,
-                gproximal_wy_leg2 * t260 - t265, -(t198 + t227), gproximal_wy_leg2 * t277 + t281,
-                -t286, -(gproximal_wy_leg2 * t287 + t294), -(9.81 * t181), t207, t348,
-                minus_gproximal_wy_leg3 * t351, t357, t348,
+                gproximal_wy_leg2, -(t192 + t222), gproximal_wy_leg2 * t230 - t238,
+                gproximal_wy_leg2 * t254 - t259, t222, gproximal_wy_leg2 * t268 + t272, -t277,
+                -(gproximal_wy_leg2 * t278 + t284), -(9.81 * t175), t201, t337,
+                minus_gproximal_wy_leg3 * t340, t346, t337,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t377,
-                -(minus_gproximal_wy_leg3 * t390 + minus_c_proximal_leg3 * t382),
-                -(minus_gproximal_wy_leg3 * t411 + minus_c_proximal_leg3 * t344),
-                t348 + t377,
-                minus_c_proximal_leg3 * t384 - minus_gproximal_wy_leg3 * t426,
+                -(t367 - t337),
+                -(minus_gproximal_wy_leg3 * t379 + minus_c_proximal_leg3 * t374),
+                -(minus_gproximal_wy_leg3 * t400 + minus_c_proximal_leg3 * t333),
+                t367,
+                minus_c_proximal_leg3 * t356 - minus_gproximal_wy_leg3 * t412,
                 -(minus_c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t437 - minus_c_proximal_leg3 * (9.81 * t338),
-                -(9.81 * t333),
-                -t357,
-                t498,
-                minus_gproximal_wy_leg4 * t501,
-                t507,
-                t498,
+                minus_gproximal_wy_leg3 * t423 - minus_c_proximal_leg3 * t425,
+                -(9.81 * t322),
+                -t346,
+                t482,
+                minus_gproximal_wy_leg4 * t485,
+                t491,
+                t482,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t527,
-                t543 - minus_gproximal_wy_leg4 * t536,
-                t564 - minus_gproximal_wy_leg4 * t560,
-                t498 - t527,
-                -(minus_gproximal_wy_leg4 * t576 + t581),
-                t586,
-                minus_gproximal_wy_leg4 * t589 + t594,
-                9.81 * t485,
-                -t507,
-                t610 * t617 + t651 - t653,
-                t641 * t661 - t610 * t668 + t629 * t673,
-                t610 * t691 + t641 * t694 - t629 * t697,
-                t641 * t667 - t715 + t653,
-                t610 * t722 - t641 * t724 + t629 * t727,
-                t715 - t651 + t629 * t690,
-                t629 * t749 - t641 * t751,
-                t610 * t751 - t629 * t758,
-                t641 * t758 - t610 * t749,
+                t482 - t512,
+                t527 - minus_gproximal_wy_leg4 * t520,
+                t548 - minus_gproximal_wy_leg4 * t544,
+                t512,
+                -(minus_gproximal_wy_leg4 * t557 + t562),
+                t567,
+                minus_gproximal_wy_leg4 * t570 + t574,
+                9.81 * t469,
+                -t491,
+                t590 * t597 + t631 - t633,
+                t590 * t645 + t621 * t648 + t609 * t653,
+                t590 * t671 + t621 * t674 + t609 * t677,
+                t621 * t644 - t695 + t633,
+                t590 * t702 + t621 * t704 + t609 * t707,
+                t695 - t631 + t609 * t670,
+                -(9.81 * t585),
+                -(9.81 * t599),
+                -(9.81 * t605),
             ],
             [
-                t50, minus_gproximal_wz_leg1 * t51, t58, t50,
+                t49, minus_gproximal_wz_leg1 * t50, t57, t49,
                 minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wz_leg1,
-                t79,
-                t91 - minus_gproximal_wz_leg1 * t86,
-                t112 - minus_gproximal_wz_leg1 * t110,
-                t50 - t79,
-                -(minus_gproximal_wz_leg1 * t126 + t128),
-                t135,
-                minus_gproximal_wz_leg1 * t137 + t140,
+                t49 - t80,
+                t90 - minus_gproximal_wz_leg1 * t85,
+                t111 - minus_gproximal_wz_leg1 * t109,
+                t80,
+                -(minus_gproximal_wz_leg1 * t122 + t124),
+                t131,
+                minus_gproximal_wz_leg1 * t133 + t136,
                 0.0,
-                -t58,
-                t200,
-                minus_gproximal_wz_leg2 * t201,
-                t208,
-                t200,
+                -t57,
+                t194,
+                minus_gproximal_wz_leg2 * t195,
+                t202,
+                t194,
                 minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wz_leg2,
-                t229,
-                t244 - minus_gproximal_wz_leg2 * t236,
-                t265 - minus_gproximal_wz_leg2 * t260,
-                t200 - t229,
-                -(minus_gproximal_wz_leg2 * t277 + t281),
-                t286,
-                minus_gproximal_wz_leg2 * t287 + t294,
+                t194 - t225,
+                t238 - minus_gproximal_wz_leg2 * t230,
+                t259 - minus_gproximal_wz_leg2 * t254,
+                t225,
+                -(minus_gproximal_wz_leg2 * t268 + t272),
+                t277,
+                minus_gproximal_wz_leg2 * t278 + t284,
                 0.0,
-                -t208,
-                t350,
-                minus_gproximal_wz_leg3 * t351,
-                t358,
-                t350,
+                -t202,
+                t339,
+                minus_gproximal_wz_leg3 * t340,
+                t347,
+                t339,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t379,
-                t383 - minus_gproximal_wz_leg3 * t390,
-                t398 - minus_gproximal_wz_leg3 * t411,
-                t350 - t379,
-                -(minus_gproximal_wz_leg3 * t426 + t428),
-                t435,
-                minus_gproximal_wz_leg3 * t437 + t440,
+                t339 - t370,
+                t375 - minus_gproximal_wz_leg3 * t379,
+                t387 - minus_gproximal_wz_leg3 * t400,
+                t370,
+                -(minus_gproximal_wz_leg3 * t412 + t414),
+                t421,
+                minus_gproximal_wz_leg3 * t423 + t426,
                 0.0,
-                -t358,
-                t500,
-                minus_gproximal_wz_leg4 * t501,
-                t508,
-                t500,
+                -t347,
+                t484,
+                minus_gproximal_wz_leg4 * t485,
+                t492,
+                t484,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t529,
-                t543 - minus_gproximal_wz_leg4 * t536,
-                t564 - minus_gproximal_wz_leg4 * t560,
-                t500 - t529,
-                -(minus_gproximal_wz_leg4 * t576 + t581),
-                t586,
-                minus_gproximal_wz_leg4 * t589 + t594,
+                t484 - t515,
+                t527 - minus_gproximal_wz_leg4 * t520,
+                t548 - minus_gproximal_wz_leg4 * t544,
+                t515,
+                -(minus_gproximal_wz_leg4 * t557 + t562),
+                t567,
+                minus_gproximal_wz_leg4 * t570 + t574,
                 0.0,
-                -t508,
-                t615 * t617 + t656 - t658,
-                t644 * t661 - t615 * t668 + t634 * t673,
-                t615 * t691 + t644 * t694 - t634 * t697,
-                t644 * t667 - t719 + t658,
-                t615 * t722 - t644 * t724 + t634 * t727,
-                t719 - t656 + t634 * t690,
+                -t492,
+                t595 * t597 + t636 - t638,
+                t595 * t645 + t624 * t648 + t614 * t653,
+                t595 * t671 + t624 * t674 + t614 * t677,
+                t624 * t644 - t699 + t638,
+                t595 * t702 + t624 * t704 + t614 * t707,
+                t699 - t636 + t614 * t670,
                 0.0,
                 0.0,
                 0.0,
@@ -2861,7 +2773,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 998 operations (362 additions, 625 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 830 intermediates.
+    /// 865 operations (332 additions, 526 multiplications, 7 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 697 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2886,639 +2798,603 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t33 = 0.7071067811865475 * (t31 - c_distal_leg1);
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t33 * t34;
-        let t36 = pose[2] * t6;
-        let t37 = pose[0] * t3;
-        let t38 = t36 + t37;
-        let t39 = pose[3] * t0;
-        let t40 = pose[0] * t6;
-        let t41 = t39 - t40;
-        let t42 = t38 - t41;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t42 * t27));
-        let t46 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t46 * t34;
-        let t49 = t13 - t4;
-        let t50 = t49 - t41;
-        let t51 = t39 + t40;
-        let t52 = t51 - t14;
-        let t53 = t50 + t52;
-        let minus_s_distal_leg2 = 0.5 * t53;
-        let t57 = 1.0 - 0.25 * (t53 * t53);
-        ::overact::guard::reach(t57, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t57);
+        let t21 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t21 * (t10 - minus_s_distal_leg1);
+        let t24 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t26 = 0.7071067811865475 * (t24 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t26 * t21;
+        let t28 = pose[2] * t6;
+        let t29 = pose[0] * t3;
+        let t30 = t28 + t29;
+        let t31 = pose[3] * t0;
+        let t32 = pose[0] * t6;
+        let t33 = t31 - t32;
+        let t34 = t30 - t33;
+        let s_proximal_leg1 = t21 * (0.7071067811865475 * t34);
+        let t37 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t37 * t21;
+        let t40 = t13 - t4;
+        let t41 = t40 - t33;
+        let t42 = t31 + t32;
+        let t43 = t42 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t41 + t43);
+        let t47 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t47, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t47);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t63 = 1.0 / (0.5 * (t50 * c_distal_leg2 - t52 * c_distal_leg2));
-        let t64 = t50 - t52;
-        let c_proximal_leg2 = t63 * (0.25 * (t64 * t64));
-        let t68 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t70 = 0.7071067811865475 * (t68 - c_distal_leg2);
-        let t71 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wy_leg2 = t70 * t71;
-        let t75 = t11 + t14;
-        let t76 = t5 + t9;
-        let t77 = t75 - t76;
-        let s_distal_leg3 = 0.5 * t77;
-        let t81 = 1.0 - 0.25 * (t77 * t77);
-        ::overact::guard::reach(t81, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t81);
+        let t49 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t49 * (t41 - minus_s_distal_leg2);
+        let t52 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t54 = 0.7071067811865475 * (t52 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t54 * t49;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t14);
+        let t61 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t61, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t61);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t87 = 1.0 / (0.5 * (t76 * c_distal_leg3 + t75 * c_distal_leg3));
-        let t88 = t38 + t41;
-        let t89 = t76 + t75;
-        let s_proximal_leg3 = t87 * (0.35355339059327373 * (t88 * t89));
-        let t93 = s_distal_leg3 * s_proximal_leg3;
-        let t94 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t93 * t94;
-        let t98 = t51 + t14;
-        let t99 = t49 + t41;
-        let t100 = t98 - t99;
-        let s_distal_leg4 = 0.5 * t100;
-        let t104 = 1.0 - 0.25 * (t100 * t100);
-        ::overact::guard::reach(t104, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t104);
+        let t63 = 1.0 / c_distal_leg3;
+        let t64 = t30 + t33;
+        let s_proximal_leg3 = t63 * (0.7071067811865475 * t64);
+        let t67 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t67 * t63;
+        let s_distal_leg4 = minus_s_distal_leg2 + t14 - t40;
+        let t74 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t74, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t74);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t110 = 1.0 / (0.5 * (t99 * c_distal_leg4 + t98 * c_distal_leg4));
-        let t111 = t99 + t98;
-        let c_proximal_leg4 = t110 * (0.25 * (t111 * t111));
-        let t115 = s_distal_leg4 * c_proximal_leg4;
-        let t117 = 0.7071067811865475 * (t115 + c_distal_leg4);
-        let t118 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wy_leg4 = t117 * t118;
-        let t123 = t36 - t37;
-        let t124 = t123 - t9;
-        let minus_s_proximal_leg2 = t63 * (0.35355339059327373 * (t124 * t64));
-        let t128 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t128 * t71;
-        let c_proximal_leg3 = t87 * (0.25 * (t89 * t89));
-        let t135 = s_distal_leg3 * c_proximal_leg3;
-        let t137 = 0.7071067811865475 * (t135 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t137 * t94;
-        let t141 = t123 + t9;
-        let minus_s_proximal_leg4 = t110 * (0.35355339059327373 * (t141 * t111));
-        let t145 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t145 * t118;
-        let t148 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let t76 = 1.0 / c_distal_leg4;
+        let t77 = t42 + t14;
+        let c_proximal_leg4 = t76 * (t77 - s_distal_leg4);
+        let t80 = s_distal_leg4 * c_proximal_leg4;
+        let t82 = 0.7071067811865475 * (t80 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t82 * t76;
+        let t87 = t28 - t29;
+        let t88 = t87 - t9;
+        let minus_s_proximal_leg2 = t49 * (0.7071067811865475 * t88);
+        let t91 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t91 * t49;
+        let t95 = t11 + t14;
+        let c_proximal_leg3 = t63 * (t95 - s_distal_leg3);
+        let t98 = s_distal_leg3 * c_proximal_leg3;
+        let t100 = 0.7071067811865475 * (t98 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t100 * t63;
+        let t104 = t87 + t9;
+        let minus_s_proximal_leg4 = t76 * (0.7071067811865475 * t104);
+        let t107 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t107 * t76;
+        let t110 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t155 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t117 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
-        let t156 = 1.0 / t155;
-        let t157 = t148 * t156;
-        let t159 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
+        let t118 = 1.0 / t117;
+        let t119 = t110 * t118;
+        let t121 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t148 * t157;
-        ::overact::guard::platform(t159, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t159, 0.9999999999999998, "actuators")?;
-        let t160 = 1.0 / t159;
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t110 * t119;
+        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
+        let t122 = 1.0 / t121;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t168 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t130 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t178 = t168 * t157
+        let t140 = t130 * t119
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t180 = t135 - c_distal_leg3;
-        let t181 = 0.7071067811865475 * t180;
-        let minus_gproximal_wz_leg3 = t181 * t94;
-        let t184 = t31 + c_distal_leg1;
-        let t185 = 0.7071067811865475 * t184;
-        let gproximal_wz_leg1 = t185 * t34;
-        let t188 = t68 + c_distal_leg2;
-        let t189 = 0.7071067811865475 * t188;
-        let gproximal_wz_leg2 = t189 * t71;
-        let t194 = t115 - c_distal_leg4;
-        let t195 = 0.7071067811865475 * t194;
-        let minus_gproximal_wz_leg4 = t195 * t118;
-        let t205 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t142 = t98 - c_distal_leg3;
+        let t143 = 0.7071067811865475 * t142;
+        let minus_gproximal_wz_leg3 = t143 * t63;
+        let t146 = t24 + c_distal_leg1;
+        let t147 = 0.7071067811865475 * t146;
+        let gproximal_wz_leg1 = t147 * t21;
+        let t150 = t52 + c_distal_leg2;
+        let t151 = 0.7071067811865475 * t150;
+        let gproximal_wz_leg2 = t151 * t49;
+        let t156 = t80 - c_distal_leg4;
+        let t157 = 0.7071067811865475 * t156;
+        let minus_gproximal_wz_leg4 = t157 * t76;
+        let t167 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t206 = t205 * t156;
-        let t208 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t168 = t167 * t118;
+        let t170 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t148 * t206;
-        let t209 = t208 * t160;
-        let t220 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t110 * t168;
+        let t171 = t170 * t122;
+        let t182 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t205 * t206
-            - t208 * t209;
-        ::overact::guard::platform(t220, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t220, 1.9999999999999996, "actuators")?;
-        let t221 = 1.0 / t220;
-        let t232 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t167 * t168
+            - t170 * t171;
+        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
+        let t183 = 1.0 / t182;
+        let t194 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t168 * t206
-            - t209 * t178;
-        let t233 = t221 * t232;
-        let t235 = t160 * t178 - t209 * t233;
-        let t239 = t168 * t156 + t157 * t235 + t206 * t233;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t239 + c_proximal_leg1 * t235
-            + minus_gdistal_wx_leg1 * t233;
-        let t250 = t46 * t235 - t33 * t239 - t185 * t233;
-        let t251 = minus_s_distal_leg1 * t34 * t250;
-        let t252 = rate_distal_leg1 * t251;
-        let t255 = 0.7071067811865475 * t42;
-        let minus_rate_wrist_leg1 = 0.7071067811865475 * t10 * t239 - t255 * t235
-            - 0.7071067811865475 * t15 * t233 - t251;
-        let t263 = t252 - rate_distal_leg1 * minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t34 * t263;
-        let t265 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t130 * t168
+            - t171 * t140;
+        let t195 = t183 * t194;
+        let t197 = t122 * t140 - t171 * t195;
+        let t201 = t130 * t118 + t119 * t197 + t168 * t195;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t201 + c_proximal_leg1 * t197
+            + minus_gdistal_wx_leg1 * t195;
+        let t211 = t37 * t197 - t26 * t201 - t147 * t195;
+        let minus_rate_proximal_leg1 = t21 * t211;
+        let t213 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t214 = rate_distal_leg1 * t213;
+        let t219 = t30 * t197 - t5 * t201 + t11 * t195;
+        let t224 = t33 * t197 - t9 * t201 + t14 * t195;
+        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * (t219 - t224) + t213;
+        let t229 = t214 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t21 * t229;
+        let t231 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t239 + gdistal_wy_leg2 * t235
-            - gdistal_wy_leg2 * t233;
-        let t278 = t70 * t235 - t128 * t239 - t189 * t233;
-        let t279 = minus_s_distal_leg2 * t71 * t278;
-        let t280 = rate_distal_leg2 * t279;
-        let t281 = 0.7071067811865475 * t124;
-        let minus_rate_wrist_leg2 = t281 * t239 - 0.7071067811865475 * t50 * t235
-            - 0.7071067811865475 * t52 * t233 - t279;
-        let t291 = t280 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t71 * t291;
-        let t293 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t201 + gdistal_wy_leg2 * t197
+            - gdistal_wy_leg2 * t195;
+        let t243 = t54 * t197 - t91 * t201 - t151 * t195;
+        let minus_rate_proximal_leg2 = t49 * t243;
+        let t245 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t246 = rate_distal_leg2 * t245;
+        let t251 = t40 * t197 - t87 * t201 + t42 * t195;
+        let minus_rate_wrist_leg2 = 0.7071067811865475 * (t224 - t251) - t245;
+        let t256 = t246 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t49 * t256;
+        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t233
-            - (gdistal_wx_leg3 * t239 + c_proximal_leg3 * t235);
-        let t307 = t93 * t235 - t137 * t239 + t181 * t233;
-        let t308 = s_distal_leg3 * t94 * t307;
-        let t309 = rate_distal_leg3 * t308;
-        let t310 = 0.7071067811865475 * t88;
-        let minus_rate_wrist_leg3 = t308 + t310 * t235 - 0.7071067811865475 * t76 * t239
-            + 0.7071067811865475 * t75 * t233;
-        let t320 = t309 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t94 * t320;
-        let t322 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t195
+            - (gdistal_wx_leg3 * t201 + c_proximal_leg3 * t197);
+        let t271 = t67 * t197 - t100 * t201 + t143 * t195;
+        let minus_rate_proximal_leg3 = t63 * t271;
+        let t273 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t274 = rate_distal_leg3 * t273;
+        let minus_rate_wrist_leg3 = t273 + 0.7071067811865475 * (t219 + t224);
+        let t279 = t274 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t63 * t279;
+        let t281 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t239
-            + minus_gdistal_wy_leg4 * t235 + minus_gdistal_wy_leg4 * t233;
-        let t336 = t117 * t235 - t145 * t239 + t195 * t233;
-        let t337 = s_distal_leg4 * t118 * t336;
-        let t338 = minus_rate_distal_leg4 * t337;
-        let t341 = 0.7071067811865475 * t141;
-        let minus_rate_wrist_leg4 = t337 + 0.7071067811865475 * t99 * t235 - t341 * t239
-            + 0.7071067811865475 * t98 * t233;
-        let t349 = t338 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t118 * t349;
-        let t351 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t353 = minus_gproximal_wx_leg1 * t265 + minus_gproximal_wx_leg2 * t293
-            + minus_gproximal_wx_leg3 * t322 + minus_gproximal_wx_leg4 * t351;
-        let t362 = t157 * t353
-            - (minus_gproximal_wy_leg1 * t265 + minus_gproximal_wy_leg2 * t293
-                + minus_gproximal_wy_leg3 * t322 + minus_gproximal_wy_leg4 * t351);
-        let t374 = gproximal_wz_leg1 * t265 + gproximal_wz_leg2 * t293
-            - minus_gproximal_wz_leg3 * t322 - minus_gproximal_wz_leg4 * t351
-            + t206 * t353 - t209 * t362;
-        let t375 = t221 * t374;
-        let t377 = t160 * t362 - t209 * t375;
-        let t383 = t156 * t353 + t157 * t377 + t206 * t375;
-        let t388 = t46 * t377 - t33 * t383 - t185 * t375 - t263;
-        let minus_rate_dot_proximal_leg1 = t34 * t388;
-        let t390 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let t391 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let t392 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t393 = 6.936717523440031 * s_proximal_leg1;
-        let t397 = 6.936717523440031 * c_proximal_leg1;
-        let t398 = minus_gproximal_wx_leg1 * t397;
-        let t399 = minus_gproximal_wy_leg1 * t397;
-        let t400 = gproximal_wz_leg1 * t397;
-        let minus_rate_proximal_leg1 = t34 * t250;
-        let t408 = t388 + t252;
-        let t410 = t250 * rate_distal_leg1;
-        let t412 = c_distal_leg1 * t408 + minus_s_distal_leg1 * t410;
-        let t414 = t250 * t251;
-        let t415 = minus_gdistal_wx_leg1 * t414;
-        let t416 = minus_gproximal_wx_leg1 * t412 + t415;
-        let t419 = minus_gproximal_wy_leg1 * t412 - c_proximal_leg1 * t414;
-        let t421 = gproximal_wz_leg1 * t412 + t415;
-        let t422 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t428 = c_distal_leg1 * (t410 - (t422 - t410))
-            - minus_s_distal_leg1 * (t252 + t408);
-        let t430 = t250 * t250;
-        let t431 = t251 * t251;
-        let t432 = t430 - t431;
-        let t433 = minus_gdistal_wx_leg1 * t432;
-        let minus_rate_dot_distal_leg1 = t250 * minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t383 + c_proximal_leg1 * t377
-            + minus_gdistal_wx_leg1 * t375 - minus_rate_dot_distal_leg1;
-        let t449 = rate_distal_leg1 * rate_distal_leg1;
-        let t452 = c_distal_leg1 * (t414 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t449 - t430);
-        let t454 = minus_gdistal_wx_leg1 * t388;
-        let t468 = minus_s_distal_leg1 * (t414 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t431 - t449);
-        let t470 = minus_gdistal_wx_leg1 * t422;
-        let t477 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t479 = 6.936717523440031 * t46;
-        let t485 = 9.81 * (t255 * c_proximal_leg1 - 0.5 * (t10 * s_proximal_leg1));
-        let t495 = 4.905 * t42;
-        let t509 = t70 * t377 - t128 * t383 - t189 * t375 - t291;
-        let minus_rate_dot_proximal_leg2 = t71 * t509;
-        let t511 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let t512 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let t513 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t514 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t518 = 6.936717523440031 * c_proximal_leg2;
-        let t519 = minus_gproximal_wx_leg2 * t518;
-        let t520 = minus_gproximal_wy_leg2 * t518;
-        let t521 = gproximal_wz_leg2 * t518;
-        let minus_rate_proximal_leg2 = t71 * t278;
-        let t529 = t509 + t280;
-        let t531 = t278 * rate_distal_leg2;
-        let t533 = c_distal_leg2 * t529 + minus_s_distal_leg2 * t531;
-        let t535 = t278 * t279;
-        let t537 = minus_gproximal_wx_leg2 * t533 + c_proximal_leg2 * t535;
-        let t539 = gdistal_wy_leg2 * t535;
-        let t540 = minus_gproximal_wy_leg2 * t533 - t539;
-        let t542 = t539 - gproximal_wz_leg2 * t533;
-        let t543 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t549 = c_distal_leg2 * (t531 - (t543 - t531))
-            - minus_s_distal_leg2 * (t280 + t529);
-        let t551 = t278 * t278;
-        let t552 = t279 * t279;
-        let t553 = t551 - t552;
-        let t556 = gdistal_wy_leg2 * t553;
-        let minus_rate_dot_distal_leg2 = t278 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t383 + gdistal_wy_leg2 * t377
-            - gdistal_wy_leg2 * t375 - minus_rate_dot_distal_leg2;
-        let t570 = rate_distal_leg2 * rate_distal_leg2;
-        let t573 = c_distal_leg2 * (t535 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t570 - t551);
-        let t578 = gdistal_wy_leg2 * t509;
-        let t589 = minus_s_distal_leg2 * (t535 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t552 - t570);
-        let t593 = gdistal_wy_leg2 * t543;
-        let t599 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t600 = 6.936717523440031 * t128;
-        let t612 = 9.81 * (0.5 * (t50 * minus_s_proximal_leg2) - t281 * c_proximal_leg2);
-        let t616 = 4.905 * t124;
-        let t630 = t93 * t377 - t137 * t383 + t181 * t375 + t320;
-        let minus_rate_dot_proximal_leg3_2 = t94 * t630;
-        let t632 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t633 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t634 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t635 = 6.936717523440031 * s_proximal_leg3;
-        let t639 = 6.936717523440031 * c_proximal_leg3;
-        let t640 = minus_gproximal_wx_leg3 * t639;
-        let t641 = minus_gproximal_wy_leg3 * t639;
-        let t642 = minus_gproximal_wz_leg3 * t639;
-        let minus_rate_proximal_leg3 = t94 * t307;
-        let t650 = t307 * t308;
-        let t651 = gdistal_wx_leg3 * t650;
-        let t652 = t307 * rate_distal_leg3;
-        let t654 = t630 - t309;
-        let t656 = s_distal_leg3 * t652 - c_distal_leg3 * t654;
-        let t658 = t651 - minus_gproximal_wx_leg3 * t656;
-        let t661 = minus_gproximal_wy_leg3 * t656 + c_proximal_leg3 * t650;
-        let t663 = t651 - minus_gproximal_wz_leg3 * t656;
-        let t664 = t307 * t307;
-        let t665 = t308 * t308;
-        let t666 = t664 - t665;
-        let t667 = gdistal_wx_leg3 * t666;
-        let t668 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t674 = c_distal_leg3 * (t652 + t668 + t652) + s_distal_leg3 * (t654 - t309);
-        let t682 = gdistal_wx_leg3 * t630;
-        let t683 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t307 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t375
-            - (gdistal_wx_leg3 * t383 + c_proximal_leg3 * t377)
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t201
+            + minus_gdistal_wy_leg4 * t197 + minus_gdistal_wy_leg4 * t195;
+        let t294 = t82 * t197 - t107 * t201 + t157 * t195;
+        let minus_rate_proximal_leg4 = t76 * t294;
+        let t296 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t297 = minus_rate_distal_leg4 * t296;
+        let minus_rate_wrist_leg4 = t296 + 0.7071067811865475 * (t251 + t224);
+        let t302 = t297 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t76 * t302;
+        let t304 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t306 = minus_gproximal_wx_leg1 * t231 + minus_gproximal_wx_leg2 * t258
+            + minus_gproximal_wx_leg3 * t281 + minus_gproximal_wx_leg4 * t304;
+        let t315 = t119 * t306
+            - (minus_gproximal_wy_leg1 * t231 + minus_gproximal_wy_leg2 * t258
+                + minus_gproximal_wy_leg3 * t281 + minus_gproximal_wy_leg4 * t304);
+        let t327 = gproximal_wz_leg1 * t231 + gproximal_wz_leg2 * t258
+            - minus_gproximal_wz_leg3 * t281 - minus_gproximal_wz_leg4 * t304
+            + t168 * t306 - t171 * t315;
+        let t328 = t183 * t327;
+        let t330 = t122 * t315 - t171 * t328;
+        let t336 = t118 * t306 + t119 * t330 + t168 * t328;
+        let t341 = t37 * t330 - t26 * t336 - t147 * t328 - t229;
+        let minus_rate_dot_proximal_leg1 = t21 * t341;
+        let t343 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let t344 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let t345 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t346 = 6.936717523440031 * s_proximal_leg1;
+        let t348 = minus_gproximal_wy_leg1 * t346;
+        let t350 = 6.936717523440031 * c_proximal_leg1;
+        let t351 = minus_gproximal_wx_leg1 * t350;
+        let t352 = minus_gproximal_wy_leg1 * t350;
+        let t353 = gproximal_wz_leg1 * t350;
+        let t361 = t214 + t341 + t214;
+        let t362 = c_distal_leg1 * t361;
+        let t364 = t211 * t213;
+        let t365 = minus_gdistal_wx_leg1 * t364;
+        let t366 = minus_gproximal_wx_leg1 * t362 + t365;
+        let t369 = minus_gproximal_wy_leg1 * t362 - c_proximal_leg1 * t364;
+        let t371 = gproximal_wz_leg1 * t362 + t365;
+        let t372 = t211 * rate_distal_leg1;
+        let t373 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t378 = c_distal_leg1 * (t372 - (t373 - t372)) - minus_s_distal_leg1 * t361;
+        let t380 = t211 * t211;
+        let t381 = t213 * t213;
+        let t382 = t380 - t381;
+        let t383 = minus_gdistal_wx_leg1 * t382;
+        let minus_minus_rate_dot_distal_leg1 = t211 * minus_minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t336 + c_proximal_leg1 * t330
+            + minus_gdistal_wx_leg1 * t328 + minus_minus_rate_dot_distal_leg1;
+        let t399 = rate_distal_leg1 * rate_distal_leg1;
+        let t402 = c_distal_leg1 * (t364 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t399 - t380);
+        let t404 = minus_gdistal_wx_leg1 * t341;
+        let t418 = minus_s_distal_leg1 * (t364 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t381 - t399);
+        let t420 = minus_gdistal_wx_leg1 * t373;
+        let t427 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t429 = 6.936717523440031 * t37;
+        let t431 = t15 * (-6.936717523440031);
+        let t432 = minus_gdistal_wx_leg1 * t431;
+        let t448 = t54 * t330 - t91 * t336 - t151 * t328 - t256;
+        let minus_rate_dot_proximal_leg2 = t49 * t448;
+        let t450 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let t451 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let t452 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t453 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t454 = minus_gproximal_wx_leg2 * t453;
+        let t457 = 6.936717523440031 * c_proximal_leg2;
+        let t458 = minus_gproximal_wx_leg2 * t457;
+        let t459 = minus_gproximal_wy_leg2 * t457;
+        let t460 = gproximal_wz_leg2 * t457;
+        let t468 = t246 + t448 + t246;
+        let t469 = c_distal_leg2 * t468;
+        let t471 = t243 * t245;
+        let t473 = minus_gproximal_wx_leg2 * t469 + c_proximal_leg2 * t471;
+        let t475 = gdistal_wy_leg2 * t471;
+        let t476 = minus_gproximal_wy_leg2 * t469 - t475;
+        let t478 = t475 - gproximal_wz_leg2 * t469;
+        let t479 = t243 * rate_distal_leg2;
+        let t480 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t485 = c_distal_leg2 * (t479 - (t480 - t479)) - minus_s_distal_leg2 * t468;
+        let t487 = t243 * t243;
+        let t488 = t245 * t245;
+        let t489 = t487 - t488;
+        let t492 = gdistal_wy_leg2 * t489;
+        let minus_rate_dot_distal_leg2 = t243 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t336 + gdistal_wy_leg2 * t330
+            - gdistal_wy_leg2 * t328 - minus_rate_dot_distal_leg2;
+        let t506 = rate_distal_leg2 * rate_distal_leg2;
+        let t509 = c_distal_leg2 * (t471 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t506 - t487);
+        let t514 = gdistal_wy_leg2 * t448;
+        let t525 = minus_s_distal_leg2 * (t471 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t488 - t506);
+        let t529 = gdistal_wy_leg2 * t480;
+        let t535 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t536 = 6.936717523440031 * t91;
+        let t542 = 0.7071067811865475 * t43 * t453;
+        let t555 = t67 * t330 - t100 * t336 + t143 * t328 + t279;
+        let minus_rate_dot_proximal_leg3_2 = t63 * t555;
+        let t557 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t558 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t559 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t560 = 6.936717523440031 * s_proximal_leg3;
+        let t562 = minus_gproximal_wy_leg3 * t560;
+        let t564 = 6.936717523440031 * c_proximal_leg3;
+        let t565 = minus_gproximal_wx_leg3 * t564;
+        let t566 = minus_gproximal_wy_leg3 * t564;
+        let t567 = minus_gproximal_wz_leg3 * t564;
+        let t574 = t271 * t273;
+        let t575 = gdistal_wx_leg3 * t574;
+        let t577 = t555 - t274 - t274;
+        let t578 = c_distal_leg3 * t577;
+        let t580 = t575 + minus_gproximal_wx_leg3 * t578;
+        let t583 = c_proximal_leg3 * t574 - minus_gproximal_wy_leg3 * t578;
+        let t585 = t575 + minus_gproximal_wz_leg3 * t578;
+        let t586 = t271 * t271;
+        let t587 = t273 * t273;
+        let t588 = t586 - t587;
+        let t589 = gdistal_wx_leg3 * t588;
+        let t590 = t271 * rate_distal_leg3;
+        let t591 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t596 = c_distal_leg3 * (t590 + t591 + t590) + s_distal_leg3 * t577;
+        let t604 = gdistal_wx_leg3 * t555;
+        let t605 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t271 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t328
+            - (gdistal_wx_leg3 * t336 + c_proximal_leg3 * t330)
             - minus_rate_dot_distal_leg3;
-        let t695 = s_distal_leg3 * (t683 - t664)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t650);
-        let t710 = s_distal_leg3 * (t650 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t665 - t683);
-        let t712 = gdistal_wx_leg3 * t668;
-        let t719 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t721 = 6.936717523440031 * t93;
-        let t727 = 9.81 * (t310 * c_proximal_leg3 - 0.5 * (t76 * s_proximal_leg3));
-        let t737 = 4.905 * t88;
-        let t751 = t117 * t377 - t145 * t383 + t195 * t375 - t349;
-        let minus_rate_dot_proximal_leg4 = t118 * t751;
-        let t753 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let t754 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let t755 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t756 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t760 = 6.936717523440031 * c_proximal_leg4;
-        let t761 = minus_gproximal_wx_leg4 * t760;
-        let t762 = minus_gproximal_wy_leg4 * t760;
-        let t763 = minus_gproximal_wz_leg4 * t760;
-        let minus_rate_proximal_leg4 = t118 * t336;
-        let t771 = t751 + t338;
-        let t773 = t336 * minus_rate_distal_leg4;
-        let t775 = c_distal_leg4 * t771 + s_distal_leg4 * t773;
-        let t777 = t336 * t337;
-        let t779 = minus_gproximal_wx_leg4 * t775 + c_proximal_leg4 * t777;
-        let t781 = minus_gdistal_wy_leg4 * t777;
-        let t782 = minus_gproximal_wy_leg4 * t775 - t781;
-        let t784 = minus_gproximal_wz_leg4 * t775 - t781;
-        let t785 = t336 * t336;
-        let t786 = t337 * t337;
-        let t787 = t785 - t786;
-        let t791 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t795 = s_distal_leg4 * (t338 + t771) - c_distal_leg4 * (t773 + t773 - t791);
-        let t799 = minus_gdistal_wy_leg4 * t787;
-        let minus_rate_dot_distal_leg4 = t336 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t383
-            + minus_gdistal_wy_leg4 * t377 + minus_gdistal_wy_leg4 * t375
+        let t617 = s_distal_leg3 * (t605 - t586)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t574);
+        let t632 = s_distal_leg3 * (t574 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t587 - t605);
+        let t634 = gdistal_wx_leg3 * t591;
+        let t641 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t643 = 6.936717523440031 * t67;
+        let t645 = t95 * 6.936717523440031;
+        let t646 = gdistal_wx_leg3 * t645;
+        let t662 = t82 * t330 - t107 * t336 + t157 * t328 - t302;
+        let minus_rate_dot_proximal_leg4 = t76 * t662;
+        let t664 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let t665 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let t666 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t667 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t671 = 6.936717523440031 * c_proximal_leg4;
+        let t672 = minus_gproximal_wx_leg4 * t671;
+        let t673 = minus_gproximal_wy_leg4 * t671;
+        let t674 = minus_gproximal_wz_leg4 * t671;
+        let t682 = t297 + t662 + t297;
+        let t683 = c_distal_leg4 * t682;
+        let t685 = t294 * t296;
+        let t687 = minus_gproximal_wx_leg4 * t683 + c_proximal_leg4 * t685;
+        let t689 = minus_gdistal_wy_leg4 * t685;
+        let t690 = minus_gproximal_wy_leg4 * t683 - t689;
+        let t692 = minus_gproximal_wz_leg4 * t683 - t689;
+        let t693 = t294 * t294;
+        let t694 = t296 * t296;
+        let t695 = t693 - t694;
+        let t698 = t294 * minus_rate_distal_leg4;
+        let t699 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t703 = s_distal_leg4 * t682 - c_distal_leg4 * (t698 + t698 - t699);
+        let t707 = minus_gdistal_wy_leg4 * t695;
+        let minus_rate_dot_distal_leg4 = t294 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t336
+            + minus_gdistal_wy_leg4 * t330 + minus_gdistal_wy_leg4 * t328
             + minus_rate_dot_distal_leg4;
-        let t813 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t816 = c_distal_leg4 * (t777 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t813 - t785);
-        let t820 = minus_gdistal_wy_leg4 * t751;
-        let t831 = c_distal_leg4 * (t786 - t813)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t777);
-        let t836 = minus_gdistal_wy_leg4 * t791;
-        let t841 = minus_gdistal_wy_leg4 * minus_rate_dot_distal_leg4_2;
-        let t846 = 6.936717523440031 * t145;
-        let t853 = 9.81 * (0.5 * (t99 * minus_s_proximal_leg4) - t341 * c_proximal_leg4);
-        let t858 = 4.905 * t141;
-        let t871 = t38 * t377 - t5 * t383 + t11 * t375;
-        let t877 = t38 * t235 - t5 * t239 + t11 * t233;
-        let t882 = t41 * t235 - t9 * t239 + t14 * t233;
-        let t883 = t877 * t882;
-        let t884 = t123 * t883;
-        let t890 = t49 * t235 - t123 * t239 + t51 * t233;
-        let t891 = t877 * t890;
-        let t892 = t9 * t891;
-        let t895 = t49 * t883;
-        let t897 = t41 * t891;
-        let t900 = t51 * t883;
-        let t902 = t14 * t891;
-        let t904 = t890 * t882;
-        let t905 = t904 + t871;
-        let t911 = t49 * t377 - t123 * t383 + t51 * t375;
-        let t912 = t883 - t911;
-        let t915 = t877 * t877;
-        let t916 = t890 * t890;
-        let t917 = t915 - t916;
-        let t934 = t41 * t377 - t9 * t383 + t14 * t375;
-        let t935 = t891 + t934;
-        let t937 = t882 * t882;
-        let t938 = t937 - t915;
-        let t941 = t904 - t871;
-        let t955 = t5 * t904;
-        let t959 = t38 * t904;
-        let t963 = t11 * t904;
-        let t966 = t916 - t937;
-        let t968 = t891 - t934;
-        let t971 = t883 + t911;
-        let t993 = 9.81 * t51;
-        let t995 = 9.81 * t14;
-        let t1002 = 9.81 * t11;
+        let t721 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t724 = c_distal_leg4 * (t685 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t721 - t693);
+        let t728 = minus_gdistal_wy_leg4 * t662;
+        let t739 = c_distal_leg4 * (t694 - t721)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t685);
+        let t744 = minus_gdistal_wy_leg4 * t699;
+        let t749 = minus_gdistal_wy_leg4 * minus_rate_dot_distal_leg4_2;
+        let t751 = 6.936717523440031 * t107;
+        let t757 = t667 * (0.7071067811865475 * t77) + minus_gproximal_wy_leg4 * t751;
+        let t758 = t107 * 9.81;
+        let t768 = t30 * t330 - t5 * t336 + t11 * t328;
+        let t770 = t219 * t224;
+        let t771 = t87 * t770;
+        let t773 = t219 * t251;
+        let t774 = t9 * t773;
+        let t777 = t40 * t770;
+        let t779 = t33 * t773;
+        let t782 = t42 * t770;
+        let t784 = t14 * t773;
+        let t790 = t40 * t330 - t87 * t336 + t42 * t328;
+        let t791 = t790 - t770;
+        let t793 = t251 * t224;
+        let t794 = t768 + t793;
+        let t797 = t219 * t219;
+        let t798 = t251 * t251;
+        let t799 = t797 - t798;
+        let t816 = t33 * t330 - t9 * t336 + t14 * t328;
+        let t817 = t816 + t773;
+        let t819 = t224 * t224;
+        let t820 = t819 - t797;
+        let t823 = t768 - t793;
+        let t837 = t5 * t793;
+        let t841 = t30 * t793;
+        let t845 = t11 * t793;
+        let t848 = t798 - t819;
+        let t850 = t816 - t773;
+        let t853 = t790 + t770;
         Ok([
             [
-                t390, minus_gproximal_wx_leg1 * t393, t398, t390,
+                t343, minus_gproximal_wx_leg1 * t346, t351, t343,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t416,
-                -(minus_gproximal_wx_leg1 * t428 + t433),
-                minus_gproximal_wx_leg1 * t452 - t454,
-                t390 - t416,
-                -(minus_gproximal_wx_leg1 * t468 + t470),
-                -t477,
-                -(minus_gproximal_wx_leg1 * t479 + t485),
-                minus_gproximal_wx_leg1 * t495 - 4.905 * (s_proximal_leg1 * t184),
-                -t398,
-                t511,
-                -(minus_gproximal_wx_leg2 * t514),
-                t519,
-                t511,
+                t366,
+                -(minus_gproximal_wx_leg1 * t378 + t383),
+                minus_gproximal_wx_leg1 * t402 - t404,
+                t343 - t366,
+                -(minus_gproximal_wx_leg1 * t418 + t420),
+                -t427,
+                -(minus_gproximal_wx_leg1 * t429 + t432),
+                t34 * (-6.936717523440031),
+                -t351,
+                t450,
+                -t454,
+                t458,
+                t450,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t537,
-                -(minus_gproximal_wx_leg2 * t549 + c_proximal_leg2 * t553),
-                minus_gproximal_wx_leg2 * t573 - c_proximal_leg2 * t509,
-                t511 - t537,
-                -(minus_gproximal_wx_leg2 * t589 + c_proximal_leg2 * t543),
+                t473,
+                -(minus_gproximal_wx_leg2 * t485 + c_proximal_leg2 * t489),
+                minus_gproximal_wx_leg2 * t509 - c_proximal_leg2 * t448,
+                t450 - t473,
+                -(minus_gproximal_wx_leg2 * t525 + c_proximal_leg2 * t480),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t600
-                    - c_proximal_leg2
-                        * (c_distal_leg2 * t518 - 3.4683587617200153 * t53),
-                -(minus_gproximal_wx_leg2 * t616
-                    + c_proximal_leg2 * (6.936717523440031 * t188)),
-                -t519,
-                t632,
-                minus_gproximal_wx_leg3 * t635,
-                t640,
-                t632,
+                minus_gproximal_wx_leg2 * t536 + t43 * t457,
+                -(c_distal_leg2 * t454 + t150 * t457),
+                -t458,
+                t557,
+                minus_gproximal_wx_leg3 * t560,
+                t565,
+                t557,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t658,
-                t667 - minus_gproximal_wx_leg3 * t674,
-                t682 - minus_gproximal_wx_leg3 * t695,
-                t632 - t658,
-                -(minus_gproximal_wx_leg3 * t710 + t712),
-                t719,
-                minus_gproximal_wx_leg3 * t721 + t727,
-                minus_gproximal_wx_leg3 * t737 - 4.905 * (s_proximal_leg3 * t180),
-                -t640,
-                t753,
-                -(minus_gproximal_wx_leg4 * t756),
-                t761,
-                t753,
+                t580,
+                t589 - minus_gproximal_wx_leg3 * t596,
+                t604 - minus_gproximal_wx_leg3 * t617,
+                t557 - t580,
+                -(minus_gproximal_wx_leg3 * t632 + t634),
+                t641,
+                minus_gproximal_wx_leg3 * t643 + t646,
+                t64 * 6.936717523440031,
+                -t565,
+                t664,
+                -(minus_gproximal_wx_leg4 * t667),
+                t672,
+                t664,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t779,
-                c_proximal_leg4 * t787 - minus_gproximal_wx_leg4 * t795,
-                c_proximal_leg4 * t751 - minus_gproximal_wx_leg4 * t816,
-                t753 - t779,
-                minus_gproximal_wx_leg4 * t831 - c_proximal_leg4 * t791,
+                t687,
+                c_proximal_leg4 * t695 - minus_gproximal_wx_leg4 * t703,
+                c_proximal_leg4 * t662 - minus_gproximal_wx_leg4 * t724,
+                t664 - t687,
+                minus_gproximal_wx_leg4 * t739 - c_proximal_leg4 * t699,
                 -(c_proximal_leg4 * minus_rate_dot_distal_leg4_2),
-                c_proximal_leg4 * (c_distal_leg4 * t760 + 3.4683587617200153 * t100)
-                    - minus_gproximal_wx_leg4 * t846,
-                -(minus_gproximal_wx_leg4 * t858
-                    + c_proximal_leg4 * (6.936717523440031 * t194)),
-                -t761,
-                t5 * t871 + t884 - t892,
-                t123 * t905 - t5 * t912 + t9 * t917,
-                t5 * t935 + t123 * t938 - t9 * t941,
-                t123 * t911 - t955 + t892,
-                t5 * t966 - t123 * t968 + t9 * t971,
-                t955 - t884 + t9 * t934,
-                t9 * t993 - t123 * t995,
-                t5 * t995 - t9 * t1002,
-                t123 * t1002 - t5 * t993,
+                t77 * t671 - minus_gproximal_wx_leg4 * t751,
+                -(minus_gdistal_wy_leg4 * t758 + t156 * t671),
+                -t672,
+                t5 * t768 + t771 - t774,
+                t5 * t791 + t87 * t794 + t9 * t799,
+                t5 * t817 + t87 * t820 + t9 * t823,
+                t87 * t790 - t837 + t774,
+                t5 * t848 + t87 * t850 + t9 * t853,
+                t837 - t771 + t9 * t816,
+                9.81 * t30,
+                9.81 * t40,
+                9.81 * t33,
             ],
             [
-                t391, minus_gproximal_wy_leg1 * t393, t399, t391,
-                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t344, t348, t352, t344, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t419,
-                c_proximal_leg1 * t432 - minus_gproximal_wy_leg1 * t428,
-                minus_gproximal_wy_leg1 * t452 + c_proximal_leg1 * t388,
-                t391 - t419,
-                c_proximal_leg1 * t422 - minus_gproximal_wy_leg1 * t468,
+                t369,
+                c_proximal_leg1 * t382 - minus_gproximal_wy_leg1 * t378,
+                minus_gproximal_wy_leg1 * t402 + c_proximal_leg1 * t341,
+                t344 - t369,
+                c_proximal_leg1 * t373 - minus_gproximal_wy_leg1 * t418,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * (c_distal_leg1 * t397 - 3.4683587617200153 * t16)
-                    - minus_gproximal_wy_leg1 * t479,
-                minus_gproximal_wy_leg1 * t495
-                    + c_proximal_leg1 * (6.936717523440031 * t184),
-                -t399,
-                t512,
-                -(minus_gproximal_wy_leg2 * t514),
-                t520,
-                t512,
+                c_proximal_leg1 * t431 - minus_gproximal_wy_leg1 * t429,
+                c_distal_leg1 * t348 + t146 * t350,
+                -t352,
+                t451,
+                -(minus_gproximal_wy_leg2 * t453),
+                t459,
+                t451,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t540,
-                t556 - minus_gproximal_wy_leg2 * t549,
-                minus_gproximal_wy_leg2 * t573 + t578,
-                t512 - t540,
-                t593 - minus_gproximal_wy_leg2 * t589,
-                t599,
-                minus_gproximal_wy_leg2 * t600 - t612,
-                4.905 * (minus_s_proximal_leg2 * t188) - minus_gproximal_wy_leg2 * t616,
-                -t520,
-                t633,
-                minus_gproximal_wy_leg3 * t635,
-                t641,
-                t633,
+                t476,
+                t492 - minus_gproximal_wy_leg2 * t485,
+                minus_gproximal_wy_leg2 * t509 + t514,
+                t451 - t476,
+                t529 - minus_gproximal_wy_leg2 * t525,
+                t535,
+                minus_gproximal_wy_leg2 * t536 - t542,
+                t88 * 6.936717523440031,
+                -t459,
+                t558,
+                t562,
+                t566,
+                t558,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t661,
-                -(minus_gproximal_wy_leg3 * t674 + c_proximal_leg3 * t666),
-                -(minus_gproximal_wy_leg3 * t695 + c_proximal_leg3 * t630),
-                t633 + t661,
-                c_proximal_leg3 * t668 - minus_gproximal_wy_leg3 * t710,
+                -t583,
+                -(minus_gproximal_wy_leg3 * t596 + c_proximal_leg3 * t588),
+                -(minus_gproximal_wy_leg3 * t617 + c_proximal_leg3 * t555),
+                t558 + t583,
+                c_proximal_leg3 * t591 - minus_gproximal_wy_leg3 * t632,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t721
-                    - c_proximal_leg3
-                        * (c_distal_leg3 * t639 + 3.4683587617200153 * t77),
-                minus_gproximal_wy_leg3 * t737
-                    + c_proximal_leg3 * (6.936717523440031 * t180),
-                -t641,
-                t754,
-                -(minus_gproximal_wy_leg4 * t756),
-                t762,
-                t754,
+                minus_gproximal_wy_leg3 * t643 - c_proximal_leg3 * t645,
+                c_distal_leg3 * t562 + t142 * t564,
+                -t566,
+                t665,
+                -(minus_gproximal_wy_leg4 * t667),
+                t673,
+                t665,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t782,
-                -(minus_gproximal_wy_leg4 * t795 + t799),
-                -(minus_gproximal_wy_leg4 * t816 + t820),
-                t754 - t782,
-                minus_gproximal_wy_leg4 * t831 + t836,
-                t841,
-                t853 - minus_gproximal_wy_leg4 * t846,
-                4.905 * (minus_s_proximal_leg4 * t194) - minus_gproximal_wy_leg4 * t858,
-                -t762,
-                t38 * t871 + t895 - t897,
-                t49 * t905 - t38 * t912 + t41 * t917,
-                t38 * t935 + t49 * t938 - t41 * t941,
-                t49 * t911 - t959 + t897,
-                t38 * t966 - t49 * t968 + t41 * t971,
-                t959 - t895 + t41 * t934,
-                t41 * t993 - t49 * t995,
-                t38 * t995 - t41 * t1002,
-                t49 * t1002 - t38 * t993,
+                t690,
+                -(minus_gproximal_wy_leg4 * t703 + t707),
+                -(minus_gproximal_wy_leg4 * t724 + t728),
+                t665 - t690,
+                minus_gproximal_wy_leg4 * t739 + t744,
+                t749,
+                -t757,
+                t104 * (-6.936717523440031),
+                -t673,
+                t30 * t768 + t777 - t779,
+                t30 * t791 + t40 * t794 + t33 * t799,
+                t30 * t817 + t40 * t820 + t33 * t823,
+                t40 * t790 - t841 + t779,
+                t30 * t848 + t40 * t850 + t33 * t853,
+                t841 - t777 + t33 * t816,
+                -(9.81 * t5),
+                -(9.81 * t87),
+                -(9.81 * t9),
             ],
             [
-                -t392, -(gproximal_wz_leg1 * t393), -t400, -t392,
+                -t345, -(gproximal_wz_leg1 * t346), -t353, -t345,
                 -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -t421, gproximal_wz_leg1 * t428 + t433,
-                t454 - gproximal_wz_leg1 * t452, t421 - t392, gproximal_wz_leg1 * t468 + t470, t477,
-                gproximal_wz_leg1 * t479 + t485, 0.0, t400, -t513, gproximal_wz_leg2 * t514, -t521,
-                -t513, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -t371, gproximal_wz_leg1 * t378 + t383,
+                t404 - gproximal_wz_leg1 * t402, t371 - t345, gproximal_wz_leg1 * t418 + t420, t427,
+                gproximal_wz_leg1 * t429 + t432, 0.0, t353, -t452, gproximal_wz_leg2 * t453, -t460,
+                -t452, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, t542, gproximal_wz_leg2 * t549 - t556,
-                -(gproximal_wz_leg2 * t573 + t578), -(t513 + t542), gproximal_wz_leg2 * t589 - t593,
-                -t599, t612 - gproximal_wz_leg2 * t600, 0.0, t521, t634,
-                minus_gproximal_wz_leg3 * t635, t642, t634,
+                gproximal_wz_leg2, t478, gproximal_wz_leg2 * t485 - t492,
+                -(gproximal_wz_leg2 * t509 + t514), -(t452 + t478), gproximal_wz_leg2 * t525 - t529,
+                -t535, t542 - gproximal_wz_leg2 * t536, 0.0, t460, t559,
+                minus_gproximal_wz_leg3 * t560, t567, t559,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t663,
-                t667 - minus_gproximal_wz_leg3 * t674,
-                t682 - minus_gproximal_wz_leg3 * t695,
-                t634 - t663,
-                -(minus_gproximal_wz_leg3 * t710 + t712),
-                t719,
-                minus_gproximal_wz_leg3 * t721 + t727,
+                t585,
+                t589 - minus_gproximal_wz_leg3 * t596,
+                t604 - minus_gproximal_wz_leg3 * t617,
+                t559 - t585,
+                -(minus_gproximal_wz_leg3 * t632 + t634),
+                t641,
+                minus_gproximal_wz_leg3 * t643 + t646,
                 0.0,
-                -t642,
-                t755,
-                -(minus_gproximal_wz_leg4 * t756),
-                t763,
-                t755,
+                -t567,
+                t666,
+                -(minus_gproximal_wz_leg4 * t667),
+                t674,
+                t666,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t784,
-                -(minus_gproximal_wz_leg4 * t795 + t799),
-                -(minus_gproximal_wz_leg4 * t816 + t820),
-                t755 - t784,
-                minus_gproximal_wz_leg4 * t831 + t836,
-                t841,
-                t853 - minus_gproximal_wz_leg4 * t846,
+                t692,
+                -(minus_gproximal_wz_leg4 * t703 + t707),
+                -(minus_gproximal_wz_leg4 * t724 + t728),
+                t666 - t692,
+                minus_gproximal_wz_leg4 * t739 + t744,
+                t749,
+                t758 - t757,
                 0.0,
-                -t763,
-                t11 * t871 + t900 - t902,
-                t51 * t905 - t11 * t912 + t14 * t917,
-                t11 * t935 + t51 * t938 - t14 * t941,
-                t51 * t911 - t963 + t902,
-                t11 * t966 - t51 * t968 + t14 * t971,
-                t963 - t900 + t14 * t934,
+                -t674,
+                t11 * t768 + t782 - t784,
+                t11 * t791 + t42 * t794 + t14 * t799,
+                t11 * t817 + t42 * t820 + t14 * t823,
+                t42 * t790 - t845 + t784,
+                t11 * t848 + t42 * t850 + t14 * t853,
+                t845 - t782 + t14 * t816,
                 0.0,
                 0.0,
                 0.0,
@@ -3535,7 +3411,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 980 operations (350 additions, 621 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 840 intermediates.
+    /// 919 operations (330 additions, 580 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 779 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3558,370 +3434,359 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t19, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t21 = 1.0 / c_distal_leg1;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t27 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t28 = t10 - t15;
-        let c_proximal_leg1 = t27 * (0.25 * (t28 * t28));
-        let t32 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 0.7071067811865475 * (t32 - c_distal_leg1);
-        let t36 = pose[2] * t6;
-        let t37 = pose[0] * t3;
-        let t38 = t36 + t37;
-        let t39 = pose[3] * t0;
-        let t40 = pose[0] * t6;
-        let t41 = t39 - t40;
-        let t42 = t38 - t41;
-        let s_proximal_leg1 = t27 * (0.35355339059327373 * (t42 * t28));
-        let t46 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t49 = t32 + c_distal_leg1;
-        let t50 = 0.7071067811865475 * t49;
+        let t22 = t10 - t15;
+        let c_proximal_leg1 = 0.25 * (t22 * t22) / (0.5 * (c_distal_leg1 * t22));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t30 = 0.7071067811865475 * (t28 - c_distal_leg1);
+        let t32 = pose[2] * t6;
+        let t33 = pose[0] * t3;
+        let t34 = t32 + t33;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let t37 = t35 - t36;
+        let t38 = t34 - t37;
+        let t39 = 0.7071067811865475 * t38;
+        let s_proximal_leg1 = t21 * t39;
+        let t41 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t44 = t28 + c_distal_leg1;
+        let t45 = 0.7071067811865475 * t44;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t59 = minus_s_distal_leg1 * t21;
-        let t64 = t34 * twist[0] + t46 * twist[1] - t50 * twist[2];
-        let t65 = t59 * t64;
-        let t66 = rate_distal_leg1 * t65;
-        let rate_wrist_leg1 = t65 + 0.7071067811865475 * t10 * twist[0]
-            + 0.7071067811865475 * t42 * twist[1] + 0.7071067811865475 * t15 * twist[2];
-        let t78 = t34 * acceleration[0] + t46 * acceleration[1] - t50 * acceleration[2]
-            - (t66 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t21 * t78;
-        let t81 = 6.936717523440031 * c_proximal_leg1;
-        let minus_rate_proximal_leg1 = t21 * t64;
-        let t84 = t78 + t66;
-        let t86 = t64 * rate_distal_leg1;
-        let t89 = t13 - t4;
-        let t90 = t89 - t41;
-        let t91 = t39 + t40;
-        let t92 = t91 - t14;
-        let t93 = t90 + t92;
-        let minus_s_distal_leg2 = 0.5 * t93;
-        let t97 = 1.0 - 0.25 * (t93 * t93);
-        ::overact::guard::reach(t97, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t97);
+        let t54 = minus_s_distal_leg1 * t21;
+        let t59 = t30 * twist[0] + t41 * twist[1] - t45 * twist[2];
+        let t60 = t54 * t59;
+        let t61 = rate_distal_leg1 * t60;
+        let rate_wrist_leg1 = t60 + 0.7071067811865475 * t10 * twist[0] + t39 * twist[1]
+            + 0.7071067811865475 * t15 * twist[2];
+        let t72 = t30 * acceleration[0] + t41 * acceleration[1] - t45 * acceleration[2]
+            - (t61 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t21 * t72;
+        let t75 = 6.936717523440031 * c_proximal_leg1;
+        let minus_rate_proximal_leg1 = t21 * t59;
+        let t79 = t61 + t72 + t61;
+        let t81 = t13 - t4;
+        let t82 = t81 - t37;
+        let t83 = t35 + t36;
+        let t84 = t83 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t82 + t84);
+        let t87 = t82 - t84;
+        let t91 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t91, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t91);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t103 = 1.0 / (0.5 * (t90 * c_distal_leg2 - t92 * c_distal_leg2));
-        let t104 = t90 - t92;
-        let c_proximal_leg2 = t103 * (0.25 * (t104 * t104));
-        let t108 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t109 = t108 + c_distal_leg2;
-        let t110 = 0.7071067811865475 * t109;
-        let t111 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t110 * t111;
-        let t113 = t11 + t14;
-        let t114 = t5 + t9;
-        let t115 = t113 - t114;
-        let s_distal_leg3 = 0.5 * t115;
-        let t119 = 1.0 - 0.25 * (t115 * t115);
-        ::overact::guard::reach(t119, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t119);
+        let c_proximal_leg2 = 0.25 * (t87 * t87) / (0.5 * (c_distal_leg2 * t87));
+        let t96 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t97 = t96 + c_distal_leg2;
+        let t98 = 0.7071067811865475 * t97;
+        let t99 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t98 * t99;
+        let t101 = t11 + t14;
+        let t102 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t101 - t102);
+        let t106 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t106, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t106);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t125 = 1.0 / (0.5 * (t114 * c_distal_leg3 + t113 * c_distal_leg3));
-        let t126 = t38 + t41;
-        let t127 = t114 + t113;
-        let s_proximal_leg3 = t125 * (0.35355339059327373 * (t126 * t127));
-        let t131 = s_distal_leg3 * s_proximal_leg3;
-        let t132 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t131 * t132;
-        let t136 = 0.7071067811865475 * (t108 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t136 * t111;
-        let c_proximal_leg3 = t125 * (0.25 * (t127 * t127));
-        let t141 = s_distal_leg3 * c_proximal_leg3;
-        let t142 = t141 - c_distal_leg3;
-        let t143 = 0.7071067811865475 * t142;
-        let minus_gproximal_wz_leg3 = t143 * t132;
-        let minus_gproximal_wx_leg1 = t34 * t21;
-        let gproximal_wz_leg1 = t50 * t21;
-        let t150 = t36 - t37;
-        let t151 = t150 - t9;
-        let minus_s_proximal_leg2 = t103 * (0.35355339059327373 * (t151 * t104));
-        let t155 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t155 * t111;
-        let t158 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
+        let t108 = t102 + t101;
+        let t111 = 1.0 / (0.5 * (c_distal_leg3 * t108));
+        let t112 = t34 + t37;
+        let s_proximal_leg3 = t111 * (0.35355339059327373 * (t112 * t108));
+        let t116 = s_distal_leg3 * s_proximal_leg3;
+        let t117 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = t116 * t117;
+        let t121 = 0.7071067811865475 * (t96 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t121 * t99;
+        let c_proximal_leg3 = t111 * (0.25 * (t108 * t108));
+        let t126 = s_distal_leg3 * c_proximal_leg3;
+        let t127 = t126 - c_distal_leg3;
+        let t128 = 0.7071067811865475 * t127;
+        let minus_gproximal_wz_leg3 = t128 * t117;
+        let minus_gproximal_wx_leg1 = t30 * t21;
+        let gproximal_wz_leg1 = t45 * t21;
+        let t135 = t32 - t33;
+        let t136 = t135 - t9;
+        let t137 = 0.7071067811865475 * t136;
+        let minus_s_proximal_leg2 = t99 * t137;
+        let t139 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t139 * t99;
+        let t142 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wx_leg2;
-        let t161 = 0.7071067811865475 * (t141 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t161 * t132;
-        let minus_gproximal_wy_leg1 = t46 * t21;
-        let t166 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
+        let t145 = 0.7071067811865475 * (t126 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t145 * t117;
+        let minus_gproximal_wy_leg1 = t41 * t21;
+        let t150 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wy_leg2;
-        let t171 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t155 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg2;
-        let t173 = minus_gproximal_wy_leg3 * t158 - minus_gproximal_wx_leg3 * t166
-            - minus_gproximal_wz_leg3 * t171;
-        ::overact::guard::platform(t173, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t173, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t173, 0.7071067811865474, "kept actuators")?;
-        let t174 = 1.0 / t173;
-        let t175 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t174;
-        let t180 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t174;
-        let t186 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t174;
-        let t188 = minus_gdistal_wx_leg1 * t175 + c_proximal_leg1 * t180
-            + minus_gdistal_wx_leg1 * t186;
-        let t189 = t64 * t65;
-        let t191 = c_distal_leg1 * t84 + minus_s_distal_leg1 * t86 + t188 * t189;
-        let t195 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t174;
-        let t200 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t174;
-        let t206 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t174;
-        let t208 = minus_gdistal_wx_leg1 * t195 + c_proximal_leg1 * t200
-            + minus_gdistal_wx_leg1 * t206;
-        let t209 = t208 * t189;
-        let t210 = t171 * t174;
-        let t212 = t166 * t174;
-        let t214 = t158 * t174;
-        let t217 = minus_gdistal_wx_leg1 * t210
-            - (minus_gdistal_wx_leg1 * t212 + c_proximal_leg1 * t214);
-        let t218 = t217 * t189;
-        let t219 = t59 * t78;
-        let t226 = t64 * t64;
-        let t227 = t65 * t65;
-        let t228 = t226 - t227;
+        let t157 = minus_gproximal_wy_leg3 * t142 - minus_gproximal_wx_leg3 * t150
+            - minus_gproximal_wz_leg3 * t155;
+        ::overact::guard::platform(t157, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t157, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t157, 0.7071067811865474, "kept actuators")?;
+        let t158 = 1.0 / t157;
+        let t159 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t158;
+        let t164 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t158;
+        let t170 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t158;
+        let t172 = minus_gdistal_wx_leg1 * t159 + c_proximal_leg1 * t164
+            + minus_gdistal_wx_leg1 * t170;
+        let t173 = t59 * t60;
+        let t175 = c_distal_leg1 * t79 + t172 * t173;
+        let t179 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t158;
+        let t184 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t158;
+        let t190 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t158;
+        let t192 = minus_gdistal_wx_leg1 * t179 + c_proximal_leg1 * t184
+            + minus_gdistal_wx_leg1 * t190;
+        let t193 = t192 * t173;
+        let t194 = t155 * t158;
+        let t196 = t150 * t158;
+        let t198 = t142 * t158;
+        let t201 = minus_gdistal_wx_leg1 * t194
+            - (minus_gdistal_wx_leg1 * t196 + c_proximal_leg1 * t198);
+        let t202 = t201 * t173;
+        let t203 = t59 * rate_distal_leg1;
+        let t204 = t54 * t72;
+        let t210 = t59 * t59;
+        let t211 = t60 * t60;
+        let t212 = t210 - t211;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t64 * rate_wrist_leg1;
-        let t243 = rate_distal_leg1 * rate_distal_leg1;
-        let t266 = c_distal_leg1 * t81 - 3.4683587617200153 * t16;
-        let t271 = 6.936717523440031 * t49;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t59 * rate_wrist_leg1;
+        let t227 = rate_distal_leg1 * rate_distal_leg1;
+        let t248 = t15 * (-6.936717523440031);
+        let t253 = 6.936717523440031 * t44;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t288 = minus_s_distal_leg2 * t111;
-        let t293 = t155 * twist[0] + t136 * twist[1] - t110 * twist[2];
-        let t294 = t288 * t293;
-        let t295 = rate_distal_leg2 * t294;
-        let rate_wrist_leg2 = t294 + 0.7071067811865475 * t151 * twist[0]
-            + 0.7071067811865475 * t90 * twist[1] + 0.7071067811865475 * t92 * twist[2];
-        let t307 = t155 * acceleration[0] + t136 * acceleration[1]
-            - t110 * acceleration[2] - (t295 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t111 * t307;
-        let t310 = 6.936717523440031 * c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t111 * t293;
-        let t317 = c_proximal_leg2 * t175 + gdistal_wy_leg2 * t180
-            - gdistal_wy_leg2 * t186;
-        let t318 = t293 * t294;
-        let t319 = t317 * t318;
-        let t320 = t307 + t295;
-        let t322 = t293 * rate_distal_leg2;
-        let t329 = gdistal_wy_leg2 * t206
-            - (c_proximal_leg2 * t195 + gdistal_wy_leg2 * t200);
-        let t331 = c_distal_leg2 * t320 + minus_s_distal_leg2 * t322 + t329 * t318;
-        let t336 = c_proximal_leg2 * t212 + gdistal_wy_leg2 * t214
-            + gdistal_wy_leg2 * t210;
-        let t337 = t336 * t318;
-        let t338 = t293 * t293;
-        let t339 = t294 * t294;
-        let t340 = t338 - t339;
-        let t342 = t288 * t307;
+        let t270 = minus_s_distal_leg2 * t99;
+        let t275 = t139 * twist[0] + t121 * twist[1] - t98 * twist[2];
+        let t276 = t270 * t275;
+        let t277 = rate_distal_leg2 * t276;
+        let rate_wrist_leg2 = t276 + t137 * twist[0]
+            + 0.7071067811865475 * t82 * twist[1] + 0.7071067811865475 * t84 * twist[2];
+        let t288 = t139 * acceleration[0] + t121 * acceleration[1]
+            - t98 * acceleration[2] - (t277 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t99 * t288;
+        let t291 = 6.936717523440031 * c_proximal_leg2;
+        let minus_rate_proximal_leg2 = t99 * t275;
+        let t298 = c_proximal_leg2 * t159 + gdistal_wy_leg2 * t164
+            - gdistal_wy_leg2 * t170;
+        let t299 = t275 * t276;
+        let t300 = t298 * t299;
+        let t302 = t277 + t288 + t277;
+        let t308 = gdistal_wy_leg2 * t190
+            - (c_proximal_leg2 * t179 + gdistal_wy_leg2 * t184);
+        let t310 = c_distal_leg2 * t302 + t308 * t299;
+        let t315 = c_proximal_leg2 * t196 + gdistal_wy_leg2 * t198
+            + gdistal_wy_leg2 * t194;
+        let t316 = t315 * t299;
+        let t317 = t275 * t275;
+        let t318 = t276 * t276;
+        let t319 = t317 - t318;
+        let t321 = t275 * rate_distal_leg2;
+        let t322 = t270 * t288;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t293 * rate_wrist_leg2;
-        let t363 = rate_distal_leg2 * rate_distal_leg2;
-        let t384 = c_distal_leg2 * t310 - 3.4683587617200153 * t93;
-        let t390 = 6.936717523440031 * t109;
+            + t275 * rate_wrist_leg2;
+        let t342 = rate_distal_leg2 * rate_distal_leg2;
+        let t361 = 6.936717523440031 * t84;
+        let t367 = 6.936717523440031 * t97;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t407 = s_distal_leg3 * t132;
-        let t412 = t161 * twist[0] + t131 * twist[1] + t143 * twist[2];
-        let t413 = t407 * t412;
-        let t414 = rate_distal_leg3 * t413;
-        let minus_rate_wrist_leg3 = t413 + 0.7071067811865475 * t114 * twist[0]
-            + 0.7071067811865475 * t126 * twist[1]
-            + 0.7071067811865475 * t113 * twist[2];
-        let t426 = t161 * acceleration[0] + t131 * acceleration[1]
-            + t143 * acceleration[2] + t414 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t132 * t426;
-        let t429 = 6.936717523440031 * c_proximal_leg3;
-        let minus_rate_proximal_leg3 = t132 * t412;
-        let t436 = gdistal_wx_leg3 * t186
-            - (gdistal_wx_leg3 * t175 + c_proximal_leg3 * t180);
-        let t437 = t412 * t413;
-        let t438 = t436 * t437;
-        let t443 = gdistal_wx_leg3 * t195 + c_proximal_leg3 * t200
-            - gdistal_wx_leg3 * t206;
-        let t444 = t443 * t437;
-        let t445 = t412 * rate_distal_leg3;
-        let t447 = t426 - t414;
-        let t454 = gdistal_wx_leg3 * t212 + c_proximal_leg3 * t214
-            + gdistal_wx_leg3 * t210;
-        let t456 = s_distal_leg3 * t445 - c_distal_leg3 * t447 + t454 * t437;
-        let t457 = t412 * t412;
-        let t458 = t413 * t413;
-        let t459 = t457 - t458;
-        let t462 = t407 * t426;
-        let t473 = rate_distal_leg3 * rate_distal_leg3;
+        let t384 = s_distal_leg3 * t117;
+        let t389 = t145 * twist[0] + t116 * twist[1] + t128 * twist[2];
+        let t390 = t384 * t389;
+        let t391 = rate_distal_leg3 * t390;
+        let t396 = t5 * twist[0] + t34 * twist[1] + t11 * twist[2];
+        let t401 = t9 * twist[0] + t37 * twist[1] + t14 * twist[2];
+        let minus_rate_wrist_leg3 = t390 + 0.7071067811865475 * (t396 + t401);
+        let t407 = t145 * acceleration[0] + t116 * acceleration[1]
+            + t128 * acceleration[2] + t391 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t117 * t407;
+        let t410 = 6.936717523440031 * c_proximal_leg3;
+        let minus_rate_proximal_leg3 = t117 * t389;
+        let t417 = gdistal_wx_leg3 * t170
+            - (gdistal_wx_leg3 * t159 + c_proximal_leg3 * t164);
+        let t418 = t389 * t390;
+        let t419 = t417 * t418;
+        let t424 = gdistal_wx_leg3 * t179 + c_proximal_leg3 * t184
+            - gdistal_wx_leg3 * t190;
+        let t425 = t424 * t418;
+        let t427 = t407 - t391 - t391;
+        let t433 = gdistal_wx_leg3 * t196 + c_proximal_leg3 * t198
+            + gdistal_wx_leg3 * t194;
+        let t435 = t433 * t418 - c_distal_leg3 * t427;
+        let t436 = t389 * t389;
+        let t437 = t390 * t390;
+        let t438 = t436 - t437;
+        let t441 = t389 * rate_distal_leg3;
+        let t442 = t384 * t407;
+        let t452 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t412 * minus_rate_wrist_leg3;
-        let t503 = c_distal_leg3 * t429 + 3.4683587617200153 * t115;
-        let t509 = 6.936717523440031 * t142;
-        let t515 = t91 + t14;
-        let t516 = t89 + t41;
-        let t517 = t515 - t516;
-        let s_distal_leg4 = 0.5 * t517;
-        let t521 = 1.0 - 0.25 * (t517 * t517);
-        ::overact::guard::reach(t521, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t521);
+            - t389 * minus_rate_wrist_leg3;
+        let t480 = 6.936717523440031 * t101;
+        let t486 = 6.936717523440031 * t127;
+        let t492 = t83 + t14;
+        let t493 = t81 + t37;
+        let s_distal_leg4 = 0.5 * (t492 - t493);
+        let t497 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t497, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t497);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t527 = 1.0 / (0.5 * (t516 * c_distal_leg4 + t515 * c_distal_leg4));
-        let t528 = t150 + t9;
-        let t529 = t516 + t515;
-        let minus_s_proximal_leg4 = t527 * (0.35355339059327373 * (t528 * t529));
-        let t533 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t534 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t533 * t534;
-        let c_proximal_leg4 = t527 * (0.25 * (t529 * t529));
-        let t540 = s_distal_leg4 * c_proximal_leg4;
-        let t542 = 0.7071067811865475 * (t540 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t542 * t534;
-        let t546 = t540 - c_distal_leg4;
-        let t547 = 0.7071067811865475 * t546;
-        let minus_gproximal_wz_leg4 = t547 * t534;
-        let t550 = minus_gproximal_wx_leg4 * t175 - minus_gproximal_wy_leg4 * t180
-            - minus_gproximal_wz_leg4 * t186;
+        let t499 = t493 + t492;
+        let t502 = 1.0 / (0.5 * (c_distal_leg4 * t499));
+        let t503 = t135 + t9;
+        let minus_s_proximal_leg4 = t502 * (0.35355339059327373 * (t503 * t499));
+        let t507 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t508 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t507 * t508;
+        let c_proximal_leg4 = t502 * (0.25 * (t499 * t499));
+        let t514 = s_distal_leg4 * c_proximal_leg4;
+        let t516 = 0.7071067811865475 * (t514 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t516 * t508;
+        let t520 = t514 - c_distal_leg4;
+        let t521 = 0.7071067811865475 * t520;
+        let minus_gproximal_wz_leg4 = t521 * t508;
+        let t524 = minus_gproximal_wx_leg4 * t159 - minus_gproximal_wy_leg4 * t164
+            - minus_gproximal_wz_leg4 * t170;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t562 = s_distal_leg4 * t534;
-        let t567 = t533 * twist[0] + t542 * twist[1] + t547 * twist[2];
-        let t568 = t562 * t567;
-        let t569 = rate_distal_leg4 * t568;
-        let minus_rate_wrist_leg4 = t568 + 0.7071067811865475 * t528 * twist[0]
-            + 0.7071067811865475 * t516 * twist[1]
-            + 0.7071067811865475 * t515 * twist[2];
-        let t581 = t533 * acceleration[0] + t542 * acceleration[1]
-            + t547 * acceleration[2] + t569 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t534 * t581;
-        let t583 = t550 * minus_rate_dot_proximal_leg4;
-        let t588 = minus_gproximal_wy_leg4 * t200 - minus_gproximal_wx_leg4 * t195
-            + minus_gproximal_wz_leg4 * t206;
-        let t589 = t588 * minus_rate_dot_proximal_leg4;
-        let t594 = minus_gproximal_wy_leg4 * t214 - minus_gproximal_wx_leg4 * t212
-            - minus_gproximal_wz_leg4 * t210;
-        let t595 = t594 * minus_rate_dot_proximal_leg4;
-        let t596 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t600 = 6.936717523440031 * c_proximal_leg4;
-        let t601 = t550 * t600;
-        let t602 = t588 * t600;
-        let t603 = t594 * t600;
-        let minus_rate_proximal_leg4 = t534 * t567;
-        let t611 = t567 * rate_distal_leg4;
-        let t613 = t581 - t569;
-        let t615 = s_distal_leg4 * t611 - c_distal_leg4 * t613;
-        let t621 = c_proximal_leg4 * t175 + minus_gdistal_wy_leg4 * t180
-            + minus_gdistal_wy_leg4 * t186;
-        let t622 = t567 * t568;
-        let t624 = t550 * t615 - t621 * t622;
-        let t630 = c_proximal_leg4 * t195 + minus_gdistal_wy_leg4 * t200
-            + minus_gdistal_wy_leg4 * t206;
-        let t632 = t588 * t615 + t630 * t622;
-        let t638 = c_proximal_leg4 * t212 + minus_gdistal_wy_leg4 * t214
-            - minus_gdistal_wy_leg4 * t210;
-        let t640 = t594 * t615 + t638 * t622;
-        let t641 = t562 * t581;
-        let t647 = c_distal_leg4 * (t611 + t641 + t611) + s_distal_leg4 * (t613 - t569);
-        let t649 = t567 * t567;
-        let t650 = t568 * t568;
-        let t651 = t649 - t650;
-        let t660 = rate_distal_leg4 * rate_distal_leg4;
+        let t536 = s_distal_leg4 * t508;
+        let t541 = t507 * twist[0] + t516 * twist[1] + t521 * twist[2];
+        let t542 = t536 * t541;
+        let t543 = rate_distal_leg4 * t542;
+        let t548 = t135 * twist[0] + t81 * twist[1] + t83 * twist[2];
+        let minus_rate_wrist_leg4 = t542 + 0.7071067811865475 * (t548 + t401);
+        let t554 = t507 * acceleration[0] + t516 * acceleration[1]
+            + t521 * acceleration[2] + t543 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t508 * t554;
+        let t556 = t524 * minus_rate_dot_proximal_leg4;
+        let t561 = minus_gproximal_wy_leg4 * t184 - minus_gproximal_wx_leg4 * t179
+            + minus_gproximal_wz_leg4 * t190;
+        let t562 = t561 * minus_rate_dot_proximal_leg4;
+        let t567 = minus_gproximal_wy_leg4 * t198 - minus_gproximal_wx_leg4 * t196
+            - minus_gproximal_wz_leg4 * t194;
+        let t568 = t567 * minus_rate_dot_proximal_leg4;
+        let t569 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t573 = 6.936717523440031 * c_proximal_leg4;
+        let t574 = t524 * t573;
+        let t575 = t561 * t573;
+        let t576 = t567 * t573;
+        let minus_rate_proximal_leg4 = t508 * t541;
+        let t585 = t554 - t543 - t543;
+        let t586 = c_distal_leg4 * t585;
+        let t592 = c_proximal_leg4 * t159 + minus_gdistal_wy_leg4 * t164
+            + minus_gdistal_wy_leg4 * t170;
+        let t593 = t541 * t542;
+        let t595 = t524 * t586 + t592 * t593;
+        let t601 = c_proximal_leg4 * t179 + minus_gdistal_wy_leg4 * t184
+            + minus_gdistal_wy_leg4 * t190;
+        let t603 = t601 * t593 - t561 * t586;
+        let t609 = c_proximal_leg4 * t196 + minus_gdistal_wy_leg4 * t198
+            - minus_gdistal_wy_leg4 * t194;
+        let t611 = t609 * t593 - t567 * t586;
+        let t612 = t541 * rate_distal_leg4;
+        let t613 = t536 * t554;
+        let t618 = c_distal_leg4 * (t612 + t613 + t612) + s_distal_leg4 * t585;
+        let t620 = t541 * t541;
+        let t621 = t542 * t542;
+        let t622 = t620 - t621;
+        let t631 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t567 * minus_rate_wrist_leg4;
-        let t672 = s_distal_leg4 * (t660 - t649)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t622);
-        let t689 = s_distal_leg4 * (t622 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t650 - t660);
-        let t702 = 6.936717523440031 * t533;
-        let t706 = c_distal_leg4 * t600 + 3.4683587617200153 * t517;
-        let t715 = 4.905 * t528;
-        let t717 = 6.936717523440031 * t546;
-        let t730 = t5 * acceleration[0] + t38 * acceleration[1] + t11 * acceleration[2];
-        let t736 = t5 * twist[0] + t38 * twist[1] + t11 * twist[2];
-        let t741 = t9 * twist[0] + t41 * twist[1] + t14 * twist[2];
-        let t742 = t736 * t741;
-        let t743 = t89 * t742;
-        let t749 = t150 * twist[0] + t89 * twist[1] + t91 * twist[2];
-        let t750 = t736 * t749;
-        let t751 = t41 * t750;
-        let t752 = t38 * t730 + t743 - t751;
-        let t755 = t150 * t742;
-        let t757 = t9 * t750;
-        let t758 = t5 * t730 + t755 - t757;
-        let t762 = t91 * t742;
-        let t764 = t14 * t750;
-        let t765 = t11 * t730 + t762 - t764;
-        let t778 = t749 * t741;
-        let t779 = t778 + t730;
-        let t785 = t150 * acceleration[0] + t89 * acceleration[1]
-            + t91 * acceleration[2];
-        let t786 = t742 - t785;
-        let t789 = t736 * t736;
-        let t790 = t749 * t749;
-        let t791 = t789 - t790;
-        let t793 = t89 * t779 - t38 * t786 + t41 * t791;
-        let t799 = t150 * t779 - t5 * t786 + t9 * t791;
-        let t806 = t91 * t779 - t11 * t786 + t14 * t791;
-        let t823 = t9 * acceleration[0] + t41 * acceleration[1] + t14 * acceleration[2];
-        let t824 = t750 + t823;
-        let t826 = t741 * t741;
-        let t827 = t826 - t789;
-        let t830 = t778 - t730;
-        let t832 = t38 * t824 + t89 * t827 - t41 * t830;
-        let t838 = t5 * t824 + t150 * t827 - t9 * t830;
-        let t845 = t11 * t824 + t91 * t827 - t14 * t830;
-        let t859 = t38 * t778;
-        let t861 = t89 * t785 - t859 + t751;
-        let t864 = t5 * t778;
-        let t866 = t150 * t785 - t864 + t757;
-        let t870 = t11 * t778;
-        let t872 = t91 * t785 - t870 + t764;
-        let t885 = t790 - t826;
-        let t887 = t750 - t823;
-        let t890 = t742 + t785;
-        let t892 = t38 * t885 - t89 * t887 + t41 * t890;
-        let t898 = t5 * t885 - t150 * t887 + t9 * t890;
-        let t905 = t11 * t885 - t91 * t887 + t14 * t890;
-        let t920 = t859 - t743 + t41 * t823;
-        let t924 = t864 - t755 + t9 * t823;
-        let t929 = t870 - t762 + t14 * t823;
-        let t942 = 9.81 * t91;
-        let t944 = 9.81 * t14;
-        let t946 = t41 * t942 - t89 * t944;
-        let t950 = t9 * t942 - t150 * t944;
-        let t960 = 9.81 * t11;
-        let t962 = t38 * t944 - t41 * t960;
-        let t966 = t5 * t944 - t9 * t960;
-        let t977 = t89 * t960 - t38 * t942;
-        let t981 = t150 * t960 - t5 * t942;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t541 * minus_rate_wrist_leg4;
+        let t643 = s_distal_leg4 * (t631 - t620)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t593);
+        let t660 = s_distal_leg4 * (t593 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t621 - t631);
+        let t673 = 6.936717523440031 * t507;
+        let t675 = 6.936717523440031 * t492;
+        let t684 = 4.905 * t503;
+        let t686 = 6.936717523440031 * t520;
+        let t699 = t5 * acceleration[0] + t34 * acceleration[1] + t11 * acceleration[2];
+        let t701 = t396 * t401;
+        let t702 = t81 * t701;
+        let t704 = t396 * t548;
+        let t705 = t37 * t704;
+        let t706 = t34 * t699 + t702 - t705;
+        let t709 = t135 * t701;
+        let t711 = t9 * t704;
+        let t712 = t5 * t699 + t709 - t711;
+        let t716 = t83 * t701;
+        let t718 = t14 * t704;
+        let t719 = t11 * t699 + t716 - t718;
+        let t736 = t135 * acceleration[0] + t81 * acceleration[1]
+            + t83 * acceleration[2];
+        let t737 = t736 - t701;
+        let t739 = t548 * t401;
+        let t740 = t699 + t739;
+        let t743 = t396 * t396;
+        let t744 = t548 * t548;
+        let t745 = t743 - t744;
+        let t747 = t34 * t737 + t81 * t740 + t37 * t745;
+        let t753 = t5 * t737 + t135 * t740 + t9 * t745;
+        let t760 = t11 * t737 + t83 * t740 + t14 * t745;
+        let t777 = t9 * acceleration[0] + t37 * acceleration[1] + t14 * acceleration[2];
+        let t778 = t777 + t704;
+        let t780 = t401 * t401;
+        let t781 = t780 - t743;
+        let t784 = t699 - t739;
+        let t786 = t34 * t778 + t81 * t781 + t37 * t784;
+        let t792 = t5 * t778 + t135 * t781 + t9 * t784;
+        let t799 = t11 * t778 + t83 * t781 + t14 * t784;
+        let t813 = t34 * t739;
+        let t815 = t81 * t736 - t813 + t705;
+        let t818 = t5 * t739;
+        let t820 = t135 * t736 - t818 + t711;
+        let t824 = t11 * t739;
+        let t826 = t83 * t736 - t824 + t718;
+        let t839 = t744 - t780;
+        let t841 = t777 - t704;
+        let t844 = t736 + t701;
+        let t846 = t34 * t839 + t81 * t841 + t37 * t844;
+        let t852 = t5 * t839 + t135 * t841 + t9 * t844;
+        let t859 = t11 * t839 + t83 * t841 + t14 * t844;
+        let t874 = t813 - t702 + t37 * t777;
+        let t878 = t818 - t709 + t9 * t777;
+        let t883 = t824 - t716 + t14 * t777;
+        let t896 = 9.81 * t34;
+        let t898 = 9.81 * t5;
+        let t907 = 9.81 * t81;
+        let t909 = 9.81 * t135;
+        let t918 = 9.81 * t37;
+        let t920 = 9.81 * t9;
         Ok([
             [
-                -minus_rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t81,
+                -minus_rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t75,
                 -minus_rate_dot_proximal_leg1, -minus_rate_proximal_leg1,
-                -::overact::math::sign(minus_rate_proximal_leg1), 1.0, -t191,
-                c_distal_leg1 * (t86 - (t219 - t86)) - minus_s_distal_leg1 * (t66 + t84)
-                    + t188 * t228,
-                t188 * t78
-                    - (c_distal_leg1 * (t189 + rate_dot_distal_leg1)
-                        + minus_s_distal_leg1 * (t243 - t226)),
-                t191 - minus_rate_dot_proximal_leg1,
-                minus_s_distal_leg1 * (t189 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t227 - t243) + t188 * t219,
-                t188 * rate_dot_distal_leg1,
-                6.936717523440031 * t46 + t188 * t266,
-                t188 * t271 - 4.905 * t42,
-                t81,
+                -::overact::math::sign(minus_rate_proximal_leg1), 1.0, -t175,
+                c_distal_leg1 * (t203 - (t204 - t203)) - minus_s_distal_leg1 * t79
+                    + t172 * t212,
+                t172 * t72
+                    - (c_distal_leg1 * (t173 + rate_dot_distal_leg1)
+                        + minus_s_distal_leg1 * (t227 - t210)),
+                t175 - minus_rate_dot_proximal_leg1,
+                minus_s_distal_leg1 * (t173 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t211 - t227) + t172 * t204,
+                t172 * rate_dot_distal_leg1,
+                6.936717523440031 * t41 + t172 * t248,
+                t172 * t253 - 4.905 * t38,
+                t75,
                 0.0,
                 0.0,
                 0.0,
@@ -3929,14 +3794,14 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t319,
-                t317 * t340,
-                t317 * t307,
-                t319,
-                t317 * t342,
-                t317 * rate_dot_distal_leg2,
-                t317 * t384,
-                t317 * t390,
+                -t300,
+                t298 * t319,
+                t298 * t288,
+                t300,
+                t298 * t322,
+                t298 * rate_dot_distal_leg2,
+                -(t298 * t361),
+                t298 * t367,
                 0.0,
                 0.0,
                 0.0,
@@ -3945,59 +3810,59 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t438,
-                t436 * t459,
-                t436 * t426,
-                -t438,
-                -(t436 * t462),
-                t436 * rate_dot_distal_leg3,
-                t436 * t503,
-                -(t436 * t509),
+                t419,
+                t417 * t438,
+                t417 * t407,
+                -t419,
+                -(t417 * t442),
+                t417 * rate_dot_distal_leg3,
+                t417 * t480,
+                -(t417 * t486),
                 0.0,
-                -t583,
-                t550 * t596,
-                -t601,
-                -t583,
-                -(t550 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t550, minus_rate_proximal_leg4),
-                t550,
-                t624,
-                t550 * t647 - t621 * t651,
-                t550 * t672 - t621 * t581,
-                -(t583 + t624),
-                t550 * t689 + t621 * t641,
-                -(t621 * rate_dot_distal_leg4),
-                t550 * t702 - t621 * t706,
-                t550 * t715 + t621 * t717,
-                t601,
-                t180 * t752 - t175 * t758 + t186 * t765,
-                t180 * t793 - t175 * t799 + t186 * t806,
-                t180 * t832 - t175 * t838 + t186 * t845,
-                t180 * t861 - t175 * t866 + t186 * t872,
-                t180 * t892 - t175 * t898 + t186 * t905,
-                t180 * t920 - t175 * t924 + t186 * t929,
-                t180 * t946 - t175 * t950,
-                t180 * t962 - t175 * t966,
-                t180 * t977 - t175 * t981,
+                -t556,
+                t524 * t569,
+                -t574,
+                -t556,
+                -(t524 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t524, minus_rate_proximal_leg4),
+                t524,
+                -t595,
+                t524 * t618 - t592 * t622,
+                t524 * t643 - t592 * t554,
+                -(t556 - t595),
+                t524 * t660 + t592 * t613,
+                -(t592 * rate_dot_distal_leg4),
+                t524 * t673 - t592 * t675,
+                t524 * t684 + t592 * t686,
+                t574,
+                t164 * t706 - t159 * t712 + t170 * t719,
+                t164 * t747 - t159 * t753 + t170 * t760,
+                t164 * t786 - t159 * t792 + t170 * t799,
+                t164 * t815 - t159 * t820 + t170 * t826,
+                t164 * t846 - t159 * t852 + t170 * t859,
+                t164 * t874 - t159 * t878 + t170 * t883,
+                -(t159 * t896 + t164 * t898),
+                -(t159 * t907 + t164 * t909),
+                -(t159 * t918 + t164 * t920),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t209, -(t208 * t228), -(t208 * t78), -t209,
-                -(t208 * t219), -(t208 * rate_dot_distal_leg1), -(t208 * t266), -(t208 * t271), 0.0,
-                -minus_rate_dot_proximal_leg2, 6.936717523440031 * minus_s_proximal_leg2, -t310,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t193, -(t192 * t212), -(t192 * t72), -t193,
+                -(t192 * t204), -(t192 * rate_dot_distal_leg1), -(t192 * t248), -(t192 * t253), 0.0,
+                -minus_rate_dot_proximal_leg2, 6.936717523440031 * minus_s_proximal_leg2, -t291,
                 -minus_rate_dot_proximal_leg2, -minus_rate_proximal_leg2,
-                -::overact::math::sign(minus_rate_proximal_leg2), 1.0, -t331,
-                c_distal_leg2 * (t322 - (t342 - t322))
-                    - minus_s_distal_leg2 * (t295 + t320) + t329 * t340,
-                t329 * t307
-                    - (c_distal_leg2 * (t318 + rate_dot_distal_leg2)
-                        + minus_s_distal_leg2 * (t363 - t338)),
-                t331 - minus_rate_dot_proximal_leg2,
-                minus_s_distal_leg2 * (t318 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t339 - t363) + t329 * t342,
-                t329 * rate_dot_distal_leg2,
-                t329 * t384 - 6.936717523440031 * t155,
-                4.905 * t151 + t329 * t390,
-                t310,
+                -::overact::math::sign(minus_rate_proximal_leg2), 1.0, -t310,
+                c_distal_leg2 * (t321 - (t322 - t321)) - minus_s_distal_leg2 * t302
+                    + t308 * t319,
+                t308 * t288
+                    - (c_distal_leg2 * (t299 + rate_dot_distal_leg2)
+                        + minus_s_distal_leg2 * (t342 - t317)),
+                t310 - minus_rate_dot_proximal_leg2,
+                minus_s_distal_leg2 * (t299 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t318 - t342) + t308 * t322,
+                t308 * rate_dot_distal_leg2,
+                -(t308 * t361 + 6.936717523440031 * t139),
+                4.905 * t136 + t308 * t367,
+                t291,
                 0.0,
                 0.0,
                 0.0,
@@ -4005,85 +3870,85 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t444,
-                t443 * t459,
-                t443 * t426,
-                -t444,
-                -(t443 * t462),
-                t443 * rate_dot_distal_leg3,
-                t443 * t503,
-                -(t443 * t509),
+                t425,
+                t424 * t438,
+                t424 * t407,
+                -t425,
+                -(t424 * t442),
+                t424 * rate_dot_distal_leg3,
+                t424 * t480,
+                -(t424 * t486),
                 0.0,
-                -t589,
-                t588 * t596,
-                -t602,
-                -t589,
-                -(t588 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t588, minus_rate_proximal_leg4),
-                t588,
-                t632,
-                t588 * t647 + t630 * t651,
-                t588 * t672 + t630 * t581,
-                -(t589 + t632),
-                t588 * t689 - t630 * t641,
-                t630 * rate_dot_distal_leg4,
-                t588 * t702 + t630 * t706,
-                t588 * t715 - t630 * t717,
-                t602,
-                t195 * t758 - t200 * t752 - t206 * t765,
-                t195 * t799 - t200 * t793 - t206 * t806,
-                t195 * t838 - t200 * t832 - t206 * t845,
-                t195 * t866 - t200 * t861 - t206 * t872,
-                t195 * t898 - t200 * t892 - t206 * t905,
-                t195 * t924 - t200 * t920 - t206 * t929,
-                t195 * t950 - t200 * t946,
-                t195 * t966 - t200 * t962,
-                t195 * t981 - t200 * t977,
+                -t562,
+                t561 * t569,
+                -t575,
+                -t562,
+                -(t561 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t561, minus_rate_proximal_leg4),
+                t561,
+                t603,
+                t561 * t618 + t601 * t622,
+                t561 * t643 + t601 * t554,
+                -(t562 + t603),
+                t561 * t660 - t601 * t613,
+                t601 * rate_dot_distal_leg4,
+                t561 * t673 + t601 * t675,
+                t561 * t684 - t601 * t686,
+                t575,
+                t179 * t712 - t184 * t706 - t190 * t719,
+                t179 * t753 - t184 * t747 - t190 * t760,
+                t179 * t792 - t184 * t786 - t190 * t799,
+                t179 * t820 - t184 * t815 - t190 * t826,
+                t179 * t852 - t184 * t846 - t190 * t859,
+                t179 * t878 - t184 * t874 - t190 * t883,
+                t179 * t896 + t184 * t898,
+                t179 * t907 + t184 * t909,
+                t179 * t918 + t184 * t920,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t218, t217 * t228, t217 * t78, t218,
-                t217 * t219, t217 * rate_dot_distal_leg1, t217 * t266, t217 * t271, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t337, -(t336 * t340), -(t336 * t307), -t337,
-                -(t336 * t342), -(t336 * rate_dot_distal_leg2), -(t336 * t384), -(t336 * t390), 0.0,
-                -minus_rate_dot_proximal_leg3, -(6.936717523440031 * s_proximal_leg3), -t429,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t202, t201 * t212, t201 * t72, t202,
+                t201 * t204, t201 * rate_dot_distal_leg1, t201 * t248, t201 * t253, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t316, -(t315 * t319), -(t315 * t288), -t316,
+                -(t315 * t322), -(t315 * rate_dot_distal_leg2), t315 * t361, -(t315 * t367), 0.0,
+                -minus_rate_dot_proximal_leg3, -(6.936717523440031 * s_proximal_leg3), -t410,
                 -minus_rate_dot_proximal_leg3, -minus_rate_proximal_leg3,
-                -::overact::math::sign(minus_rate_proximal_leg3), 1.0, t456,
-                c_distal_leg3 * (t445 + t462 + t445) + s_distal_leg3 * (t447 - t414)
-                    + t454 * t459,
-                s_distal_leg3 * (t473 - t457)
-                    - c_distal_leg3 * (rate_dot_distal_leg3 - t437) + t454 * t426,
-                -(minus_rate_dot_proximal_leg3 + t456),
-                s_distal_leg3 * (t437 + rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t458 - t473) - t454 * t462,
-                t454 * rate_dot_distal_leg3,
-                t454 * t503 - 6.936717523440031 * t131,
-                -(4.905 * t126 + t454 * t509),
-                t429,
-                -t595,
-                t594 * t596,
-                -t603,
-                -t595,
-                -(t594 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t594, minus_rate_proximal_leg4),
-                t594,
-                t640,
-                t594 * t647 + t638 * t651,
-                t594 * t672 + t638 * t581,
-                -(t595 + t640),
-                t594 * t689 - t638 * t641,
-                t638 * rate_dot_distal_leg4,
-                t594 * t702 + t638 * t706,
-                t594 * t715 - t638 * t717,
-                t603,
-                t212 * t758 - t214 * t752 + t210 * t765,
-                t212 * t799 - t214 * t793 + t210 * t806,
-                t212 * t838 - t214 * t832 + t210 * t845,
-                t212 * t866 - t214 * t861 + t210 * t872,
-                t212 * t898 - t214 * t892 + t210 * t905,
-                t212 * t924 - t214 * t920 + t210 * t929,
-                t212 * t950 - t214 * t946,
-                t212 * t966 - t214 * t962,
-                t212 * t981 - t214 * t977,
+                -::overact::math::sign(minus_rate_proximal_leg3), 1.0, t435,
+                c_distal_leg3 * (t441 + t442 + t441) + s_distal_leg3 * t427
+                    + t433 * t438,
+                s_distal_leg3 * (t452 - t436)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t418) + t433 * t407,
+                -(minus_rate_dot_proximal_leg3 + t435),
+                s_distal_leg3 * (t418 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t437 - t452) - t433 * t442,
+                t433 * rate_dot_distal_leg3,
+                t433 * t480 - 6.936717523440031 * t116,
+                -(4.905 * t112 + t433 * t486),
+                t410,
+                -t568,
+                t567 * t569,
+                -t576,
+                -t568,
+                -(t567 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t567, minus_rate_proximal_leg4),
+                t567,
+                t611,
+                t567 * t618 + t609 * t622,
+                t567 * t643 + t609 * t554,
+                -(t568 + t611),
+                t567 * t660 - t609 * t613,
+                t609 * rate_dot_distal_leg4,
+                t567 * t673 + t609 * t675,
+                t567 * t684 - t609 * t686,
+                t576,
+                t196 * t712 - t198 * t706 + t194 * t719,
+                t196 * t753 - t198 * t747 + t194 * t760,
+                t196 * t792 - t198 * t786 + t194 * t799,
+                t196 * t820 - t198 * t815 + t194 * t826,
+                t196 * t852 - t198 * t846 + t194 * t859,
+                t196 * t878 - t198 * t874 + t194 * t883,
+                t196 * t896 + t198 * t898,
+                t196 * t907 + t198 * t909,
+                t196 * t918 + t198 * t920,
             ],
         ])
     }
@@ -4098,7 +3963,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 900 operations (326 additions, 569 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 772 intermediates.
+    /// 877 operations (316 additions, 556 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 749 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4147,327 +4012,323 @@ impl Spherical4Rrr {
         let t45 = 6.9367175234400325 * minus_s_proximal_leg1;
         let t46 = 6.9367175234400325 * minus_c_proximal_leg1;
         let minus_rate_proximal_leg1 = t2 * t27;
-        let t49 = t27 * rate_distal_leg1;
-        let t51 = t43 - t29;
-        let t58 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t59 = c_distal_leg2 * t58;
-        let t60 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t61 = t59 - t60;
-        let t62 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wz_leg2 = t61 * t62;
-        let t68 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t69 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wy_leg3 = t68 * t69;
-        let t72 = t59 + t60;
-        let gproximal_wy_leg2 = t72 * t62;
-        let t74 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t75 = c_distal_leg3 * t74;
-        let t76 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t77 = t75 - t76;
-        let minus_gproximal_wz_leg3 = t77 * t69;
+        let t50 = t43 - t29 - t29;
+        let t56 = 0.7071067811865476 * minus_c_proximal_leg2;
+        let t57 = c_distal_leg2 * t56;
+        let t58 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t59 = t57 - t58;
+        let t60 = 1.0 / minus_s_distal_leg2;
+        let minus_gproximal_wz_leg2 = t59 * t60;
+        let t66 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t67 = 1.0 / minus_s_distal_leg3;
+        let minus_gproximal_wy_leg3 = t66 * t67;
+        let t70 = t57 + t58;
+        let gproximal_wy_leg2 = t70 * t60;
+        let t72 = 0.7071067811865476 * minus_c_proximal_leg3;
+        let t73 = c_distal_leg3 * t72;
+        let t74 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t75 = t73 - t74;
+        let minus_gproximal_wz_leg3 = t75 * t67;
         let minus_gproximal_wz_leg1 = t8 * t2;
-        let t82 = minus_s_proximal_leg2 * c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t82 * t62;
+        let t80 = minus_s_proximal_leg2 * c_distal_leg2;
+        let minus_gproximal_wx_leg2 = t80 * t60;
         let gproximal_wx_leg1 = t10 * t2;
-        let t87 = minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2
+        let t85 = minus_gproximal_wz_leg1 * minus_gproximal_wx_leg2
             + gproximal_wx_leg1 * minus_gproximal_wz_leg2;
-        let t89 = t75 + t76;
-        let minus_gproximal_wx_leg3 = t89 * t69;
+        let t87 = t73 + t74;
+        let minus_gproximal_wx_leg3 = t87 * t67;
         let gproximal_wy_leg1 = t12 * t2;
-        let t94 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
+        let t92 = gproximal_wy_leg1 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 * gproximal_wy_leg2;
-        let t99 = gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t97 = gproximal_wy_leg1 * minus_gproximal_wx_leg2
             + gproximal_wx_leg1 * gproximal_wy_leg2;
-        let t101 = minus_gproximal_wy_leg3 * t87 - minus_gproximal_wx_leg3 * t94
-            + minus_gproximal_wz_leg3 * t99;
-        ::overact::guard::platform(t101, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t101, 0.7071067811865477, "kept actuators")?;
-        ::overact::guard::platform(t101, 0.7071067811865477, "kept actuators")?;
-        let t102 = 1.0 / t101;
-        let t103 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t102;
-        let t108 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t102;
-        let t114 = (gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t102;
-        let t116 = minus_gdistal_wx_leg1 * t103 + minus_c_proximal_leg1 * t108
-            + minus_gdistal_wx_leg1 * t114;
-        let t117 = t27 * t28;
-        let t119 = c_distal_leg1 * t49 - minus_s_distal_leg1 * t51 - t116 * t117;
-        let t123 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t102;
-        let t128 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t102;
-        let t134 = (gproximal_wx_leg1 * minus_gproximal_wy_leg3
-            - gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t102;
-        let t136 = minus_gdistal_wx_leg1 * t123 + minus_c_proximal_leg1 * t128
-            - minus_gdistal_wx_leg1 * t134;
-        let t137 = t136 * t117;
-        let t138 = t94 * t102;
-        let t140 = t87 * t102;
-        let t143 = t99 * t102;
-        let t145 = minus_gdistal_wx_leg1 * t138 + minus_c_proximal_leg1 * t140
-            + minus_gdistal_wx_leg1 * t143;
-        let t146 = t145 * t117;
-        let t147 = t22 * t43;
-        let t154 = t27 * t27;
-        let t155 = t28 * t28;
-        let t156 = t154 - t155;
-        let t161 = rate_distal_leg1 * rate_distal_leg1;
+        let t99 = minus_gproximal_wy_leg3 * t85 - minus_gproximal_wx_leg3 * t92
+            + minus_gproximal_wz_leg3 * t97;
+        ::overact::guard::platform(t99, 0.7071067811865477, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.7071067811865477, "kept actuators")?;
+        ::overact::guard::platform(t99, 0.7071067811865477, "kept actuators")?;
+        let t100 = 1.0 / t99;
+        let t101 = (minus_gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            + gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t100;
+        let t106 = (minus_gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t100;
+        let t112 = (gproximal_wy_leg2 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t100;
+        let t114 = minus_gdistal_wx_leg1 * t101 + minus_c_proximal_leg1 * t106
+            + minus_gdistal_wx_leg1 * t112;
+        let t115 = t27 * t28;
+        let t117 = minus_s_distal_leg1 * t50 + t114 * t115;
+        let t121 = (minus_gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            + gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t100;
+        let t126 = (minus_gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t100;
+        let t132 = (gproximal_wx_leg1 * minus_gproximal_wy_leg3
+            - gproximal_wy_leg1 * minus_gproximal_wx_leg3) * t100;
+        let t134 = minus_gdistal_wx_leg1 * t121 + minus_c_proximal_leg1 * t126
+            - minus_gdistal_wx_leg1 * t132;
+        let t135 = t134 * t115;
+        let t136 = t92 * t100;
+        let t138 = t85 * t100;
+        let t141 = t97 * t100;
+        let t143 = minus_gdistal_wx_leg1 * t136 + minus_c_proximal_leg1 * t138
+            + minus_gdistal_wx_leg1 * t141;
+        let t144 = t143 * t115;
+        let t145 = t27 * rate_distal_leg1;
+        let t146 = t22 * t43;
+        let t152 = t27 * t27;
+        let t153 = t28 * t28;
+        let t154 = t152 - t153;
+        let t159 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
             + minus_gdistal_wx_leg1 * acceleration[2] - t27 * minus_rate_wrist_leg1;
-        let t192 = 9.81 * t37;
-        let t197 = 9.81 * t8;
+        let t190 = 9.81 * t37;
+        let t195 = 9.81 * t8;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t214 = c_distal_leg2 * t62;
-        let t219 = t82 * twist[0] - t72 * twist[1] + t61 * twist[2];
-        let t220 = t214 * t219;
-        let t221 = rate_distal_leg2 * t220;
-        let t224 = 0.7071067811865476 * c_distal_leg2;
-        let t225 = minus_s_distal_leg2 * t58;
-        let t229 = t225 + t224;
-        let minus_rate_wrist_leg2 = t220
+        let t212 = c_distal_leg2 * t60;
+        let t217 = t80 * twist[0] - t70 * twist[1] + t59 * twist[2];
+        let t218 = t212 * t217;
+        let t219 = rate_distal_leg2 * t218;
+        let t222 = 0.7071067811865476 * c_distal_leg2;
+        let t223 = minus_s_distal_leg2 * t56;
+        let t227 = t223 + t222;
+        let minus_rate_wrist_leg2 = t218
             + minus_s_proximal_leg2 * minus_s_distal_leg2 * twist[0]
-            + (t224 - t225) * twist[1] + t229 * twist[2];
-        let t235 = t82 * acceleration[0] - t72 * acceleration[1] + t61 * acceleration[2]
-            + t221 + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let minus_rate_dot_proximal_leg2 = t62 * t235;
-        let t237 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t238 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t62 * t219;
-        let t245 = minus_gdistal_wy_leg2 * t108 - minus_c_proximal_leg2 * t103
-            - minus_gdistal_wy_leg2 * t114;
-        let t246 = t219 * t220;
-        let t247 = t245 * t246;
-        let t248 = t219 * rate_distal_leg2;
-        let t250 = t235 - t221;
-        let t257 = minus_c_proximal_leg2 * t123 - minus_gdistal_wy_leg2 * t128
-            - minus_gdistal_wy_leg2 * t134;
-        let t259 = c_distal_leg2 * t248 - minus_s_distal_leg2 * t250 + t257 * t246;
-        let t264 = minus_gdistal_wy_leg2 * t140 - minus_c_proximal_leg2 * t138
-            - minus_gdistal_wy_leg2 * t143;
-        let t265 = t264 * t246;
-        let t266 = t219 * t219;
-        let t267 = t220 * t220;
-        let t268 = t266 - t267;
-        let t270 = t214 * t235;
-        let t281 = rate_distal_leg2 * rate_distal_leg2;
+            + (t222 - t223) * twist[1] + t227 * twist[2];
+        let t233 = t80 * acceleration[0] - t70 * acceleration[1] + t59 * acceleration[2]
+            + t219 + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let minus_rate_dot_proximal_leg2 = t60 * t233;
+        let t235 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t236 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let minus_rate_proximal_leg2 = t60 * t217;
+        let t243 = minus_gdistal_wy_leg2 * t106 - minus_c_proximal_leg2 * t101
+            - minus_gdistal_wy_leg2 * t112;
+        let t244 = t217 * t218;
+        let t245 = t243 * t244;
+        let t247 = t233 - t219 - t219;
+        let t253 = minus_c_proximal_leg2 * t121 - minus_gdistal_wy_leg2 * t126
+            - minus_gdistal_wy_leg2 * t132;
+        let t255 = t253 * t244 - minus_s_distal_leg2 * t247;
+        let t260 = minus_gdistal_wy_leg2 * t138 - minus_c_proximal_leg2 * t136
+            - minus_gdistal_wy_leg2 * t141;
+        let t261 = t260 * t244;
+        let t262 = t217 * t217;
+        let t263 = t218 * t218;
+        let t264 = t262 - t263;
+        let t266 = t217 * rate_distal_leg2;
+        let t267 = t212 * t233;
+        let t277 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t219 * minus_rate_wrist_leg2;
-        let t310 = 9.81 * t229;
-        let t316 = 9.81 * t61;
+            - t217 * minus_rate_wrist_leg2;
+        let t306 = 9.81 * t227;
+        let t312 = 9.81 * t59;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t333 = c_distal_leg3 * t69;
-        let t338 = t89 * twist[0] + t68 * twist[1] + t77 * twist[2];
-        let t339 = t333 * t338;
-        let t340 = rate_distal_leg3 * t339;
-        let t341 = minus_s_distal_leg3 * t74;
-        let t342 = 0.7071067811865476 * c_distal_leg3;
-        let t348 = t341 + t342;
-        let minus_rate_wrist_leg3 = t339 + (t341 - t342) * twist[0]
-            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t348 * twist[2];
-        let t354 = t89 * acceleration[0] + t68 * acceleration[1] + t77 * acceleration[2]
-            + t340 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t69 * t354;
-        let t356 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t357 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let minus_rate_proximal_leg3 = t69 * t338;
-        let t364 = gdistal_wx_leg3 * t103 + minus_c_proximal_leg3 * t108
-            - gdistal_wx_leg3 * t114;
-        let t365 = t338 * t339;
-        let t366 = t364 * t365;
-        let t371 = gdistal_wx_leg3 * t123 + minus_c_proximal_leg3 * t128
-            + gdistal_wx_leg3 * t134;
-        let t372 = t371 * t365;
-        let t373 = t338 * rate_distal_leg3;
-        let t375 = t354 - t340;
-        let t382 = gdistal_wx_leg3 * t138 + minus_c_proximal_leg3 * t140
-            - gdistal_wx_leg3 * t143;
-        let t384 = c_distal_leg3 * t373 - minus_s_distal_leg3 * t375 + t382 * t365;
-        let t385 = t338 * t338;
-        let t386 = t339 * t339;
-        let t387 = t385 - t386;
-        let t390 = t333 * t354;
-        let t401 = rate_distal_leg3 * rate_distal_leg3;
+        let t329 = c_distal_leg3 * t67;
+        let t334 = t87 * twist[0] + t66 * twist[1] + t75 * twist[2];
+        let t335 = t329 * t334;
+        let t336 = rate_distal_leg3 * t335;
+        let t337 = minus_s_distal_leg3 * t72;
+        let t338 = 0.7071067811865476 * c_distal_leg3;
+        let t344 = t337 + t338;
+        let minus_rate_wrist_leg3 = t335 + (t337 - t338) * twist[0]
+            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t344 * twist[2];
+        let t350 = t87 * acceleration[0] + t66 * acceleration[1] + t75 * acceleration[2]
+            + t336 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t67 * t350;
+        let t352 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t353 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let minus_rate_proximal_leg3 = t67 * t334;
+        let t360 = gdistal_wx_leg3 * t101 + minus_c_proximal_leg3 * t106
+            - gdistal_wx_leg3 * t112;
+        let t361 = t334 * t335;
+        let t362 = t360 * t361;
+        let t367 = gdistal_wx_leg3 * t121 + minus_c_proximal_leg3 * t126
+            + gdistal_wx_leg3 * t132;
+        let t368 = t367 * t361;
+        let t370 = t350 - t336 - t336;
+        let t376 = gdistal_wx_leg3 * t136 + minus_c_proximal_leg3 * t138
+            - gdistal_wx_leg3 * t141;
+        let t378 = t376 * t361 - minus_s_distal_leg3 * t370;
+        let t379 = t334 * t334;
+        let t380 = t335 * t335;
+        let t381 = t379 - t380;
+        let t384 = t334 * rate_distal_leg3;
+        let t385 = t329 * t350;
+        let t395 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t338 * minus_rate_wrist_leg3;
-        let t429 = 9.81 * t348;
-        let t435 = 9.81 * t77;
-        let t445 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t446 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t445 * t446;
-        let t449 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t450 = c_distal_leg4 * t449;
-        let t451 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t452 = t450 + t451;
-        let minus_gproximal_wy_leg4 = t452 * t446;
-        let t456 = t450 - t451;
-        let minus_gproximal_wz_leg4 = t456 * t446;
-        let t459 = gproximal_wx_leg4 * t103 + minus_gproximal_wy_leg4 * t108
-            + minus_gproximal_wz_leg4 * t114;
+            - t334 * minus_rate_wrist_leg3;
+        let t423 = 9.81 * t344;
+        let t429 = 9.81 * t75;
+        let t439 = minus_s_proximal_leg4 * c_distal_leg4;
+        let t440 = 1.0 / minus_s_distal_leg4;
+        let gproximal_wx_leg4 = t439 * t440;
+        let t443 = 0.7071067811865476 * minus_c_proximal_leg4;
+        let t444 = c_distal_leg4 * t443;
+        let t445 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t446 = t444 + t445;
+        let minus_gproximal_wy_leg4 = t446 * t440;
+        let t450 = t444 - t445;
+        let minus_gproximal_wz_leg4 = t450 * t440;
+        let t453 = gproximal_wx_leg4 * t101 + minus_gproximal_wy_leg4 * t106
+            + minus_gproximal_wz_leg4 * t112;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t471 = c_distal_leg4 * t446;
-        let t476 = t452 * twist[1] - t445 * twist[0] + t456 * twist[2];
-        let t477 = t471 * t476;
-        let t478 = rate_distal_leg4 * t477;
-        let t479 = minus_s_distal_leg4 * t449;
-        let t480 = 0.7071067811865476 * c_distal_leg4;
-        let t486 = t479 + t480;
-        let minus_rate_wrist_leg4 = t477 + (t479 - t480) * twist[1]
-            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t486 * twist[2];
-        let t492 = t452 * acceleration[1] - t445 * acceleration[0]
-            + t456 * acceleration[2] + t478 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t446 * t492;
-        let t494 = t459 * minus_rate_dot_proximal_leg4;
-        let t499 = minus_gproximal_wz_leg4 * t134
-            - (gproximal_wx_leg4 * t123 + minus_gproximal_wy_leg4 * t128);
+        let t465 = c_distal_leg4 * t440;
+        let t470 = t446 * twist[1] - t439 * twist[0] + t450 * twist[2];
+        let t471 = t465 * t470;
+        let t472 = rate_distal_leg4 * t471;
+        let t473 = minus_s_distal_leg4 * t443;
+        let t474 = 0.7071067811865476 * c_distal_leg4;
+        let t480 = t473 + t474;
+        let minus_rate_wrist_leg4 = t471 + (t473 - t474) * twist[1]
+            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t480 * twist[2];
+        let t486 = t446 * acceleration[1] - t439 * acceleration[0]
+            + t450 * acceleration[2] + t472 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t440 * t486;
+        let t488 = t453 * minus_rate_dot_proximal_leg4;
+        let t493 = minus_gproximal_wz_leg4 * t132
+            - (gproximal_wx_leg4 * t121 + minus_gproximal_wy_leg4 * t126);
+        let t494 = t493 * minus_rate_dot_proximal_leg4;
+        let t499 = gproximal_wx_leg4 * t136 + minus_gproximal_wy_leg4 * t138
+            + minus_gproximal_wz_leg4 * t141;
         let t500 = t499 * minus_rate_dot_proximal_leg4;
-        let t505 = gproximal_wx_leg4 * t138 + minus_gproximal_wy_leg4 * t140
-            + minus_gproximal_wz_leg4 * t143;
-        let t506 = t505 * minus_rate_dot_proximal_leg4;
-        let t507 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t511 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t512 = t459 * t511;
-        let t513 = t499 * t511;
-        let t514 = t505 * t511;
-        let minus_rate_proximal_leg4 = t446 * t476;
-        let t522 = t476 * rate_distal_leg4;
-        let t524 = t492 - t478;
-        let t526 = c_distal_leg4 * t522 - minus_s_distal_leg4 * t524;
-        let t532 = minus_c_proximal_leg4 * t103 - gdistal_wy_leg4 * t108
-            - gdistal_wy_leg4 * t114;
-        let t533 = t476 * t477;
-        let t535 = t459 * t526 + t532 * t533;
-        let t541 = gdistal_wy_leg4 * t128 - minus_c_proximal_leg4 * t123
-            - gdistal_wy_leg4 * t134;
-        let t543 = t499 * t526 + t541 * t533;
-        let t549 = minus_c_proximal_leg4 * t138 - gdistal_wy_leg4 * t140
-            - gdistal_wy_leg4 * t143;
-        let t551 = t505 * t526 + t549 * t533;
-        let t552 = t471 * t492;
-        let t558 = minus_s_distal_leg4 * (t522 + t552 + t522)
-            + c_distal_leg4 * (t524 - t478);
-        let t560 = t476 * t476;
-        let t561 = t477 * t477;
-        let t562 = t560 - t561;
-        let t571 = rate_distal_leg4 * rate_distal_leg4;
+        let t501 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t505 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let t506 = t453 * t505;
+        let t507 = t493 * t505;
+        let t508 = t499 * t505;
+        let minus_rate_proximal_leg4 = t440 * t470;
+        let t517 = t486 - t472 - t472;
+        let t518 = minus_s_distal_leg4 * t517;
+        let t524 = minus_c_proximal_leg4 * t101 - gdistal_wy_leg4 * t106
+            - gdistal_wy_leg4 * t112;
+        let t525 = t470 * t471;
+        let t527 = t524 * t525 - t453 * t518;
+        let t533 = gdistal_wy_leg4 * t126 - minus_c_proximal_leg4 * t121
+            - gdistal_wy_leg4 * t132;
+        let t535 = t533 * t525 - t493 * t518;
+        let t541 = minus_c_proximal_leg4 * t136 - gdistal_wy_leg4 * t138
+            - gdistal_wy_leg4 * t141;
+        let t543 = t541 * t525 - t499 * t518;
+        let t544 = t470 * rate_distal_leg4;
+        let t545 = t465 * t486;
+        let t550 = minus_s_distal_leg4 * (t544 + t545 + t544) + c_distal_leg4 * t517;
+        let t552 = t470 * t470;
+        let t553 = t471 * t471;
+        let t554 = t552 - t553;
+        let t563 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t476 * minus_rate_wrist_leg4;
-        let t583 = c_distal_leg4 * (t571 - t560)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t533);
-        let t600 = c_distal_leg4 * (t533 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t561 - t571);
-        let t613 = 9.81 * t486;
-        let t615 = c_distal_leg4 * t507;
-        let t624 = minus_s_distal_leg4 * t507;
-        let t626 = 9.81 * t456;
-        let t635 = 2.0 * pose[2];
-        let t636 = pose[2] * t635;
-        let t638 = 2.0 * pose[3];
-        let t639 = pose[3] * t638;
-        let t640 = 1.0 - t636 - t639;
-        let t642 = 2.0 * pose[1];
-        let t643 = pose[2] * t642;
-        let t644 = pose[0] * t638;
-        let t645 = t643 + t644;
-        let t648 = pose[3] * t642;
-        let t649 = pose[0] * t635;
-        let t650 = t648 - t649;
-        let t652 = t640 * acceleration[0] + t645 * acceleration[1]
-            + t650 * acceleration[2];
-        let t654 = t643 - t644;
-        let t659 = t640 * twist[0] + t645 * twist[1] + t650 * twist[2];
-        let t660 = t648 + t649;
-        let t662 = pose[3] * t635;
-        let t663 = pose[0] * t642;
-        let t664 = t662 - t663;
-        let t668 = 1.0 - pose[1] * t642;
-        let t669 = t668 - t636;
-        let t671 = t660 * twist[0] + t664 * twist[1] + t669 * twist[2];
-        let t672 = t659 * t671;
-        let t673 = t654 * t672;
-        let t676 = t668 - t639;
-        let t679 = t662 + t663;
-        let t681 = t654 * twist[0] + t676 * twist[1] + t679 * twist[2];
-        let t682 = t659 * t681;
-        let t683 = t660 * t682;
-        let t684 = t640 * t652 + t673 - t683;
-        let t687 = t676 * t672;
-        let t689 = t664 * t682;
-        let t690 = t645 * t652 + t687 - t689;
-        let t694 = t679 * t672;
-        let t696 = t669 * t682;
-        let t697 = t650 * t652 + t694 - t696;
-        let t710 = t681 * t671;
-        let t711 = t710 + t652;
-        let t717 = t654 * acceleration[0] + t676 * acceleration[1]
-            + t679 * acceleration[2];
-        let t718 = t672 - t717;
-        let t721 = t659 * t659;
-        let t722 = t681 * t681;
-        let t723 = t721 - t722;
-        let t725 = t654 * t711 - t640 * t718 + t660 * t723;
-        let t731 = t676 * t711 - t645 * t718 + t664 * t723;
-        let t738 = t679 * t711 - t650 * t718 + t669 * t723;
-        let t755 = t660 * acceleration[0] + t664 * acceleration[1]
-            + t669 * acceleration[2];
-        let t756 = t682 + t755;
-        let t758 = t671 * t671;
-        let t759 = t758 - t721;
-        let t762 = t710 - t652;
-        let t764 = t640 * t756 + t654 * t759 - t660 * t762;
-        let t770 = t645 * t756 + t676 * t759 - t664 * t762;
-        let t777 = t650 * t756 + t679 * t759 - t669 * t762;
-        let t791 = t640 * t710;
-        let t793 = t654 * t717 - t791 + t683;
-        let t796 = t645 * t710;
-        let t798 = t676 * t717 - t796 + t689;
-        let t802 = t650 * t710;
-        let t804 = t679 * t717 - t802 + t696;
-        let t817 = t722 - t758;
-        let t819 = t682 - t755;
-        let t822 = t672 + t717;
-        let t824 = t640 * t817 - t654 * t819 + t660 * t822;
-        let t830 = t645 * t817 - t676 * t819 + t664 * t822;
-        let t837 = t650 * t817 - t679 * t819 + t669 * t822;
-        let t852 = t791 - t673 + t660 * t755;
-        let t856 = t796 - t687 + t664 * t755;
-        let t861 = t802 - t694 + t669 * t755;
-        let t874 = 9.81 * t679;
-        let t876 = 9.81 * t669;
-        let t878 = t660 * t874 - t654 * t876;
-        let t882 = t664 * t874 - t676 * t876;
-        let t892 = 9.81 * t650;
-        let t894 = t640 * t876 - t660 * t892;
-        let t898 = t645 * t876 - t664 * t892;
-        let t909 = t654 * t892 - t640 * t874;
-        let t913 = t676 * t892 - t645 * t874;
+            - t470 * minus_rate_wrist_leg4;
+        let t575 = c_distal_leg4 * (t563 - t552)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t525);
+        let t592 = c_distal_leg4 * (t525 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t553 - t563);
+        let t605 = 9.81 * t480;
+        let t607 = c_distal_leg4 * t501;
+        let t616 = minus_s_distal_leg4 * t501;
+        let t618 = 9.81 * t450;
+        let t627 = 2.0 * pose[2];
+        let t628 = pose[2] * t627;
+        let t630 = 2.0 * pose[3];
+        let t631 = pose[3] * t630;
+        let t632 = 1.0 - t628 - t631;
+        let t634 = 2.0 * pose[1];
+        let t635 = pose[2] * t634;
+        let t636 = pose[0] * t630;
+        let t637 = t635 + t636;
+        let t640 = pose[3] * t634;
+        let t641 = pose[0] * t627;
+        let t642 = t640 - t641;
+        let t644 = t632 * acceleration[0] + t637 * acceleration[1]
+            + t642 * acceleration[2];
+        let t646 = t635 - t636;
+        let t651 = t632 * twist[0] + t637 * twist[1] + t642 * twist[2];
+        let t652 = t640 + t641;
+        let t654 = pose[3] * t627;
+        let t655 = pose[0] * t634;
+        let t656 = t654 - t655;
+        let t660 = 1.0 - pose[1] * t634;
+        let t661 = t660 - t628;
+        let t663 = t652 * twist[0] + t656 * twist[1] + t661 * twist[2];
+        let t664 = t651 * t663;
+        let t665 = t646 * t664;
+        let t668 = t660 - t631;
+        let t671 = t654 + t655;
+        let t673 = t646 * twist[0] + t668 * twist[1] + t671 * twist[2];
+        let t674 = t651 * t673;
+        let t675 = t652 * t674;
+        let t676 = t632 * t644 + t665 - t675;
+        let t679 = t668 * t664;
+        let t681 = t656 * t674;
+        let t682 = t637 * t644 + t679 - t681;
+        let t686 = t671 * t664;
+        let t688 = t661 * t674;
+        let t689 = t642 * t644 + t686 - t688;
+        let t706 = t646 * acceleration[0] + t668 * acceleration[1]
+            + t671 * acceleration[2];
+        let t707 = t706 - t664;
+        let t709 = t673 * t663;
+        let t710 = t644 + t709;
+        let t713 = t651 * t651;
+        let t714 = t673 * t673;
+        let t715 = t713 - t714;
+        let t717 = t632 * t707 + t646 * t710 + t652 * t715;
+        let t723 = t637 * t707 + t668 * t710 + t656 * t715;
+        let t730 = t642 * t707 + t671 * t710 + t661 * t715;
+        let t747 = t652 * acceleration[0] + t656 * acceleration[1]
+            + t661 * acceleration[2];
+        let t748 = t747 + t674;
+        let t750 = t663 * t663;
+        let t751 = t750 - t713;
+        let t754 = t644 - t709;
+        let t756 = t632 * t748 + t646 * t751 + t652 * t754;
+        let t762 = t637 * t748 + t668 * t751 + t656 * t754;
+        let t769 = t642 * t748 + t671 * t751 + t661 * t754;
+        let t783 = t632 * t709;
+        let t785 = t646 * t706 - t783 + t675;
+        let t788 = t637 * t709;
+        let t790 = t668 * t706 - t788 + t681;
+        let t794 = t642 * t709;
+        let t796 = t671 * t706 - t794 + t688;
+        let t809 = t714 - t750;
+        let t811 = t747 - t674;
+        let t814 = t706 + t664;
+        let t816 = t632 * t809 + t646 * t811 + t652 * t814;
+        let t822 = t637 * t809 + t668 * t811 + t656 * t814;
+        let t829 = t642 * t809 + t671 * t811 + t661 * t814;
+        let t844 = t783 - t665 + t652 * t747;
+        let t848 = t788 - t679 + t656 * t747;
+        let t853 = t794 - t686 + t661 * t747;
+        let t866 = 9.81 * t637;
+        let t868 = 9.81 * t632;
+        let t877 = 9.81 * t668;
+        let t879 = 9.81 * t646;
+        let t888 = 9.81 * t656;
+        let t890 = 9.81 * t652;
         Ok([
             [
                 -minus_rate_dot_proximal_leg1, -t45, -t46, -minus_rate_dot_proximal_leg1,
                 -minus_rate_proximal_leg1, -::overact::math::sign(minus_rate_proximal_leg1), 1.0,
-                t119,
-                minus_s_distal_leg1 * (t49 + t147 + t49) + c_distal_leg1 * (t51 - t29)
-                    - t116 * t156,
-                c_distal_leg1 * (t161 - t154)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t117) - t116 * t43,
-                -(minus_rate_dot_proximal_leg1 + t119),
-                c_distal_leg1 * (t117 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t155 - t161) + t116 * t147,
-                -(t116 * rate_dot_distal_leg1),
-                -(c_distal_leg1 * t45 + t116 * t192),
-                t116 * t197 - minus_s_distal_leg1 * t45,
+                -t117,
+                minus_s_distal_leg1 * (t145 + t146 + t145) + c_distal_leg1 * t50
+                    - t114 * t154,
+                c_distal_leg1 * (t159 - t152)
+                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t115) - t114 * t43,
+                -(minus_rate_dot_proximal_leg1 - t117),
+                c_distal_leg1 * (t115 + rate_dot_distal_leg1)
+                    - minus_s_distal_leg1 * (t153 - t159) + t114 * t146,
+                -(t114 * rate_dot_distal_leg1),
+                -(c_distal_leg1 * t45 + t114 * t190),
+                t114 * t195 - minus_s_distal_leg1 * t45,
                 t46,
                 0.0,
                 0.0,
@@ -4476,14 +4337,14 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t247,
-                t245 * t268,
-                t245 * t235,
-                -t247,
-                -(t245 * t270),
-                t245 * rate_dot_distal_leg2,
-                t245 * t310,
-                -(t245 * t316),
+                t245,
+                t243 * t264,
+                t243 * t233,
+                -t245,
+                -(t243 * t267),
+                t243 * rate_dot_distal_leg2,
+                t243 * t306,
+                -(t243 * t312),
                 0.0,
                 0.0,
                 0.0,
@@ -4492,58 +4353,58 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t366,
-                t364 * t387,
-                t364 * t354,
-                -t366,
-                -(t364 * t390),
-                t364 * rate_dot_distal_leg3,
-                t364 * t429,
-                -(t364 * t435),
+                t362,
+                t360 * t381,
+                t360 * t350,
+                -t362,
+                -(t360 * t385),
+                t360 * rate_dot_distal_leg3,
+                t360 * t423,
+                -(t360 * t429),
                 0.0,
-                -t494,
-                -(t459 * t507),
-                -t512,
-                -t494,
-                -(t459 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t459, minus_rate_proximal_leg4),
-                t459,
-                t535,
-                t459 * t558 + t532 * t562,
-                t459 * t583 + t532 * t492,
-                -(t494 + t535),
-                t459 * t600 - t532 * t552,
-                t532 * rate_dot_distal_leg4,
-                t532 * t613 - t459 * t615,
-                -(t459 * t624 + t532 * t626),
-                t512,
-                t103 * t684 - t108 * t690 - t114 * t697,
-                t103 * t725 - t108 * t731 - t114 * t738,
-                t103 * t764 - t108 * t770 - t114 * t777,
-                t103 * t793 - t108 * t798 - t114 * t804,
-                t103 * t824 - t108 * t830 - t114 * t837,
-                t103 * t852 - t108 * t856 - t114 * t861,
-                t103 * t878 - t108 * t882,
-                t103 * t894 - t108 * t898,
-                t103 * t909 - t108 * t913,
+                -t488,
+                -(t453 * t501),
+                -t506,
+                -t488,
+                -(t453 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t453, minus_rate_proximal_leg4),
+                t453,
+                t527,
+                t453 * t550 + t524 * t554,
+                t453 * t575 + t524 * t486,
+                -(t488 + t527),
+                t453 * t592 - t524 * t545,
+                t524 * rate_dot_distal_leg4,
+                t524 * t605 - t453 * t607,
+                -(t453 * t616 + t524 * t618),
+                t506,
+                t101 * t676 - t106 * t682 - t112 * t689,
+                t101 * t717 - t106 * t723 - t112 * t730,
+                t101 * t756 - t106 * t762 - t112 * t769,
+                t101 * t785 - t106 * t790 - t112 * t796,
+                t101 * t816 - t106 * t822 - t112 * t829,
+                t101 * t844 - t106 * t848 - t112 * t853,
+                t101 * t866 + t106 * t868,
+                t101 * t877 + t106 * t879,
+                t101 * t888 + t106 * t890,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t137, t136 * t156, t136 * t43, -t137,
-                -(t136 * t147), t136 * rate_dot_distal_leg1, t136 * t192, -(t136 * t197), 0.0,
-                -minus_rate_dot_proximal_leg2, -t237, -t238, -minus_rate_dot_proximal_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t135, t134 * t154, t134 * t43, -t135,
+                -(t134 * t146), t134 * rate_dot_distal_leg1, t134 * t190, -(t134 * t195), 0.0,
+                -minus_rate_dot_proximal_leg2, -t235, -t236, -minus_rate_dot_proximal_leg2,
                 -minus_rate_proximal_leg2, -::overact::math::sign(minus_rate_proximal_leg2), 1.0,
-                t259,
-                minus_s_distal_leg2 * (t248 + t270 + t248)
-                    + c_distal_leg2 * (t250 - t221) + t257 * t268,
-                c_distal_leg2 * (t281 - t266)
-                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t246) + t257 * t235,
-                -(minus_rate_dot_proximal_leg2 + t259),
-                c_distal_leg2 * (t246 + rate_dot_distal_leg2)
-                    - minus_s_distal_leg2 * (t267 - t281) - t257 * t270,
-                t257 * rate_dot_distal_leg2,
-                t257 * t310 - c_distal_leg2 * t237,
-                -(minus_s_distal_leg2 * t237 + t257 * t316),
-                t238,
+                t255,
+                minus_s_distal_leg2 * (t266 + t267 + t266) + c_distal_leg2 * t247
+                    + t253 * t264,
+                c_distal_leg2 * (t277 - t262)
+                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t244) + t253 * t233,
+                -(minus_rate_dot_proximal_leg2 + t255),
+                c_distal_leg2 * (t244 + rate_dot_distal_leg2)
+                    - minus_s_distal_leg2 * (t263 - t277) - t253 * t267,
+                t253 * rate_dot_distal_leg2,
+                t253 * t306 - c_distal_leg2 * t235,
+                -(minus_s_distal_leg2 * t235 + t253 * t312),
+                t236,
                 0.0,
                 0.0,
                 0.0,
@@ -4551,85 +4412,85 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t372,
-                -(t371 * t387),
-                -(t371 * t354),
-                t372,
-                t371 * t390,
-                -(t371 * rate_dot_distal_leg3),
-                -(t371 * t429),
-                t371 * t435,
+                -t368,
+                -(t367 * t381),
+                -(t367 * t350),
+                t368,
+                t367 * t385,
+                -(t367 * rate_dot_distal_leg3),
+                -(t367 * t423),
+                t367 * t429,
                 0.0,
+                -t494,
+                -(t493 * t501),
+                -t507,
+                -t494,
+                -(t493 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t493, minus_rate_proximal_leg4),
+                t493,
+                t535,
+                t493 * t550 + t533 * t554,
+                t493 * t575 + t533 * t486,
+                -(t494 + t535),
+                t493 * t592 - t533 * t545,
+                t533 * rate_dot_distal_leg4,
+                t533 * t605 - t493 * t607,
+                -(t493 * t616 + t533 * t618),
+                t507,
+                t126 * t682 - t121 * t676 - t132 * t689,
+                t126 * t723 - t121 * t717 - t132 * t730,
+                t126 * t762 - t121 * t756 - t132 * t769,
+                t126 * t790 - t121 * t785 - t132 * t796,
+                t126 * t822 - t121 * t816 - t132 * t829,
+                t126 * t848 - t121 * t844 - t132 * t853,
+                -(t121 * t866 + t126 * t868),
+                -(t121 * t877 + t126 * t879),
+                -(t121 * t888 + t126 * t890),
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t144, -(t143 * t154), -(t143 * t43), t144,
+                t143 * t146, -(t143 * rate_dot_distal_leg1), -(t143 * t190), t143 * t195, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t261, t260 * t264, t260 * t233, -t261, -(t260 * t267),
+                t260 * rate_dot_distal_leg2, t260 * t306, -(t260 * t312), 0.0,
+                -minus_rate_dot_proximal_leg3, -t352, -t353, -minus_rate_dot_proximal_leg3,
+                -minus_rate_proximal_leg3, -::overact::math::sign(minus_rate_proximal_leg3), 1.0,
+                t378,
+                minus_s_distal_leg3 * (t384 + t385 + t384) + c_distal_leg3 * t370
+                    + t376 * t381,
+                c_distal_leg3 * (t395 - t379)
+                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t361) + t376 * t350,
+                -(minus_rate_dot_proximal_leg3 + t378),
+                c_distal_leg3 * (t361 + rate_dot_distal_leg3)
+                    - minus_s_distal_leg3 * (t380 - t395) - t376 * t385,
+                t376 * rate_dot_distal_leg3,
+                t376 * t423 - c_distal_leg3 * t352,
+                -(minus_s_distal_leg3 * t352 + t376 * t429),
+                t353,
                 -t500,
-                -(t499 * t507),
-                -t513,
+                -(t499 * t501),
+                -t508,
                 -t500,
                 -(t499 * minus_rate_proximal_leg4),
                 -::overact::math::signed(t499, minus_rate_proximal_leg4),
                 t499,
                 t543,
-                t499 * t558 + t541 * t562,
-                t499 * t583 + t541 * t492,
+                t499 * t550 + t541 * t554,
+                t499 * t575 + t541 * t486,
                 -(t500 + t543),
-                t499 * t600 - t541 * t552,
+                t499 * t592 - t541 * t545,
                 t541 * rate_dot_distal_leg4,
-                t541 * t613 - t499 * t615,
-                -(t499 * t624 + t541 * t626),
-                t513,
-                t128 * t690 - t123 * t684 - t134 * t697,
-                t128 * t731 - t123 * t725 - t134 * t738,
-                t128 * t770 - t123 * t764 - t134 * t777,
-                t128 * t798 - t123 * t793 - t134 * t804,
-                t128 * t830 - t123 * t824 - t134 * t837,
-                t128 * t856 - t123 * t852 - t134 * t861,
-                t128 * t882 - t123 * t878,
-                t128 * t898 - t123 * t894,
-                t128 * t913 - t123 * t909,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t146, -(t145 * t156), -(t145 * t43), t146,
-                t145 * t147, -(t145 * rate_dot_distal_leg1), -(t145 * t192), t145 * t197, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t265, t264 * t268, t264 * t235, -t265, -(t264 * t270),
-                t264 * rate_dot_distal_leg2, t264 * t310, -(t264 * t316), 0.0,
-                -minus_rate_dot_proximal_leg3, -t356, -t357, -minus_rate_dot_proximal_leg3,
-                -minus_rate_proximal_leg3, -::overact::math::sign(minus_rate_proximal_leg3), 1.0,
-                t384,
-                minus_s_distal_leg3 * (t373 + t390 + t373)
-                    + c_distal_leg3 * (t375 - t340) + t382 * t387,
-                c_distal_leg3 * (t401 - t385)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t365) + t382 * t354,
-                -(minus_rate_dot_proximal_leg3 + t384),
-                c_distal_leg3 * (t365 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t386 - t401) - t382 * t390,
-                t382 * rate_dot_distal_leg3,
-                t382 * t429 - c_distal_leg3 * t356,
-                -(minus_s_distal_leg3 * t356 + t382 * t435),
-                t357,
-                -t506,
-                -(t505 * t507),
-                -t514,
-                -t506,
-                -(t505 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t505, minus_rate_proximal_leg4),
-                t505,
-                t551,
-                t505 * t558 + t549 * t562,
-                t505 * t583 + t549 * t492,
-                -(t506 + t551),
-                t505 * t600 - t549 * t552,
-                t549 * rate_dot_distal_leg4,
-                t549 * t613 - t505 * t615,
-                -(t505 * t624 + t549 * t626),
-                t514,
-                t138 * t684 - t140 * t690 - t143 * t697,
-                t138 * t725 - t140 * t731 - t143 * t738,
-                t138 * t764 - t140 * t770 - t143 * t777,
-                t138 * t793 - t140 * t798 - t143 * t804,
-                t138 * t824 - t140 * t830 - t143 * t837,
-                t138 * t852 - t140 * t856 - t143 * t861,
-                t138 * t878 - t140 * t882,
-                t138 * t894 - t140 * t898,
-                t138 * t909 - t140 * t913,
+                t541 * t605 - t499 * t607,
+                -(t499 * t616 + t541 * t618),
+                t508,
+                t136 * t676 - t138 * t682 - t141 * t689,
+                t136 * t717 - t138 * t723 - t141 * t730,
+                t136 * t756 - t138 * t762 - t141 * t769,
+                t136 * t785 - t138 * t790 - t141 * t796,
+                t136 * t816 - t138 * t822 - t141 * t829,
+                t136 * t844 - t138 * t848 - t141 * t853,
+                t136 * t866 + t138 * t868,
+                t136 * t877 + t138 * t879,
+                t136 * t888 + t138 * t890,
             ],
         ])
     }
@@ -4644,7 +4505,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1116 operations (406 additions, 698 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 976 intermediates.
+    /// 1051 operations (386 additions, 653 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 911 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4669,438 +4530,429 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t19, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t21 = 1.0 / c_distal_leg1;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t27 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t28 = pose[2] * t6;
-        let t29 = pose[0] * t3;
-        let t30 = t28 + t29;
-        let t31 = pose[3] * t0;
-        let t32 = pose[0] * t6;
-        let t33 = t31 - t32;
-        let t34 = t30 - t33;
-        let t35 = t10 - t15;
-        let s_proximal_leg1 = t27 * (0.35355339059327373 * (t34 * t35));
-        let t39 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t39 * t21;
-        let t42 = t13 - t4;
-        let t43 = t42 - t33;
-        let t44 = t31 + t32;
-        let t45 = t44 - t14;
-        let t46 = t43 + t45;
-        let minus_s_distal_leg2 = 0.5 * t46;
-        let t50 = 1.0 - 0.25 * (t46 * t46);
-        ::overact::guard::reach(t50, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t50);
+        let t22 = pose[2] * t6;
+        let t23 = pose[0] * t3;
+        let t24 = t22 + t23;
+        let t25 = pose[3] * t0;
+        let t26 = pose[0] * t6;
+        let t27 = t25 - t26;
+        let t28 = t24 - t27;
+        let t29 = 0.7071067811865475 * t28;
+        let s_proximal_leg1 = t21 * t29;
+        let t31 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t31 * t21;
+        let t34 = t13 - t4;
+        let t35 = t34 - t27;
+        let t36 = t25 + t26;
+        let t37 = t36 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t35 + t37);
+        let t40 = t35 - t37;
+        let t44 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t44, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t56 = 1.0 / (0.5 * (t43 * c_distal_leg2 - t45 * c_distal_leg2));
-        let t57 = t43 - t45;
-        let c_proximal_leg2 = t56 * (0.25 * (t57 * t57));
-        let t61 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t63 = 0.7071067811865475 * (t61 - c_distal_leg2);
-        let t64 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wy_leg2 = t63 * t64;
-        let t68 = t11 + t14;
-        let t69 = t5 + t9;
-        let t70 = t68 - t69;
-        let s_distal_leg3 = 0.5 * t70;
-        let t74 = 1.0 - 0.25 * (t70 * t70);
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        let c_proximal_leg2 = 0.25 * (t40 * t40) / (0.5 * (c_distal_leg2 * t40));
+        let t49 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t51 = 0.7071067811865475 * (t49 - c_distal_leg2);
+        let t52 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wy_leg2 = t51 * t52;
+        let t56 = t11 + t14;
+        let t57 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t56 - t57);
+        let t61 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t61, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t61);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t80 = 1.0 / (0.5 * (t69 * c_distal_leg3 + t68 * c_distal_leg3));
-        let t81 = t30 + t33;
-        let t82 = t69 + t68;
-        let s_proximal_leg3 = t80 * (0.35355339059327373 * (t81 * t82));
-        let t86 = s_distal_leg3 * s_proximal_leg3;
-        let t87 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t86 * t87;
-        let t91 = t44 + t14;
-        let t92 = t42 + t33;
-        let t93 = t91 - t92;
-        let s_distal_leg4 = 0.5 * t93;
-        let t97 = 1.0 - 0.25 * (t93 * t93);
-        ::overact::guard::reach(t97, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t97);
+        let t63 = t57 + t56;
+        let t66 = 1.0 / (0.5 * (c_distal_leg3 * t63));
+        let t67 = t24 + t27;
+        let s_proximal_leg3 = t66 * (0.35355339059327373 * (t67 * t63));
+        let t71 = s_distal_leg3 * s_proximal_leg3;
+        let t72 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = t71 * t72;
+        let t76 = t36 + t14;
+        let t77 = t34 + t27;
+        let s_distal_leg4 = 0.5 * (t76 - t77);
+        let t81 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t81, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t81);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t103 = 1.0 / (0.5 * (t92 * c_distal_leg4 + t91 * c_distal_leg4));
-        let t104 = t92 + t91;
-        let c_proximal_leg4 = t103 * (0.25 * (t104 * t104));
-        let t108 = s_distal_leg4 * c_proximal_leg4;
-        let t110 = 0.7071067811865475 * (t108 + c_distal_leg4);
-        let t111 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wy_leg4 = t110 * t111;
-        let c_proximal_leg1 = t27 * (0.25 * (t35 * t35));
-        let t118 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t120 = 0.7071067811865475 * (t118 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t120 * t21;
-        let t123 = t28 - t29;
-        let t124 = t123 - t9;
-        let minus_s_proximal_leg2 = t56 * (0.35355339059327373 * (t124 * t57));
-        let t128 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t128 * t64;
-        let c_proximal_leg3 = t80 * (0.25 * (t82 * t82));
-        let t135 = s_distal_leg3 * c_proximal_leg3;
-        let t137 = 0.7071067811865475 * (t135 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t137 * t87;
-        let t141 = t123 + t9;
-        let minus_s_proximal_leg4 = t103 * (0.35355339059327373 * (t141 * t104));
-        let t145 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t145 * t111;
-        let t148 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let t83 = t77 + t76;
+        let t86 = 1.0 / (0.5 * (c_distal_leg4 * t83));
+        let c_proximal_leg4 = t86 * (0.25 * (t83 * t83));
+        let t90 = s_distal_leg4 * c_proximal_leg4;
+        let t92 = 0.7071067811865475 * (t90 + c_distal_leg4);
+        let t93 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wy_leg4 = t92 * t93;
+        let t97 = t10 - t15;
+        let c_proximal_leg1 = 0.25 * (t97 * t97) / (0.5 * (c_distal_leg1 * t97));
+        let t103 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t105 = 0.7071067811865475 * (t103 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t105 * t21;
+        let t108 = t22 - t23;
+        let t109 = t108 - t9;
+        let t110 = 0.7071067811865475 * t109;
+        let minus_s_proximal_leg2 = t52 * t110;
+        let t112 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t112 * t52;
+        let c_proximal_leg3 = t66 * (0.25 * (t63 * t63));
+        let t119 = s_distal_leg3 * c_proximal_leg3;
+        let t121 = 0.7071067811865475 * (t119 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t121 * t72;
+        let t125 = t108 + t9;
+        let minus_s_proximal_leg4 = t86 * (0.35355339059327373 * (t125 * t83));
+        let t129 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t129 * t93;
+        let t132 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t155 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t139 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
-        let t156 = 1.0 / t155;
-        let t157 = t148 * t156;
-        let t159 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t139, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t139, 0.9999999999999998, "actuators")?;
+        let t140 = 1.0 / t139;
+        let t141 = t132 * t140;
+        let t143 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t148 * t157;
-        ::overact::guard::platform(t159, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t159, 0.9999999999999998, "actuators")?;
-        let t160 = 1.0 / t159;
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t132 * t141;
+        ::overact::guard::platform(t143, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t143, 0.9999999999999998, "actuators")?;
+        let t144 = 1.0 / t143;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t168 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t152 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t178 = t168 * t157
+        let t162 = t152 * t141
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t180 = t135 - c_distal_leg3;
-        let t181 = 0.7071067811865475 * t180;
-        let minus_gproximal_wz_leg3 = t181 * t87;
-        let t184 = t118 + c_distal_leg1;
-        let t185 = 0.7071067811865475 * t184;
-        let gproximal_wz_leg1 = t185 * t21;
-        let t188 = t61 + c_distal_leg2;
-        let t189 = 0.7071067811865475 * t188;
-        let gproximal_wz_leg2 = t189 * t64;
-        let t194 = t108 - c_distal_leg4;
-        let t195 = 0.7071067811865475 * t194;
-        let minus_gproximal_wz_leg4 = t195 * t111;
-        let t205 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t164 = t119 - c_distal_leg3;
+        let t165 = 0.7071067811865475 * t164;
+        let minus_gproximal_wz_leg3 = t165 * t72;
+        let t168 = t103 + c_distal_leg1;
+        let t169 = 0.7071067811865475 * t168;
+        let gproximal_wz_leg1 = t169 * t21;
+        let t172 = t49 + c_distal_leg2;
+        let t173 = 0.7071067811865475 * t172;
+        let gproximal_wz_leg2 = t173 * t52;
+        let t178 = t90 - c_distal_leg4;
+        let t179 = 0.7071067811865475 * t178;
+        let minus_gproximal_wz_leg4 = t179 * t93;
+        let t189 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t206 = t205 * t156;
-        let t208 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t190 = t189 * t140;
+        let t192 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t148 * t206;
-        let t209 = t208 * t160;
-        let t220 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t132 * t190;
+        let t193 = t192 * t144;
+        let t204 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t205 * t206
-            - t208 * t209;
-        ::overact::guard::platform(t220, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t220, 1.9999999999999996, "actuators")?;
-        let t221 = 1.0 / t220;
-        let t232 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t189 * t190
+            - t192 * t193;
+        ::overact::guard::platform(t204, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t204, 1.9999999999999996, "actuators")?;
+        let t205 = 1.0 / t204;
+        let t216 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t168 * t206
-            - t209 * t178;
-        let t233 = t221 * t232;
-        let t235 = t160 * t178 - t209 * t233;
-        let t239 = t168 * t156 + t157 * t235 + t206 * t233;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t239 + c_proximal_leg1 * t235
-            + minus_gdistal_wx_leg1 * t233;
-        let t250 = t39 * t235 - t120 * t239 - t185 * t233;
-        let t251 = minus_s_distal_leg1 * t21 * t250;
-        let t252 = rate_distal_leg1 * t251;
-        let minus_rate_wrist_leg1 = 0.7071067811865475 * t10 * t239
-            - 0.7071067811865475 * t34 * t235 - 0.7071067811865475 * t15 * t233 - t251;
-        let t263 = t252 - rate_distal_leg1 * minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t21 * t263;
-        let t265 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t152 * t190
+            - t193 * t162;
+        let t217 = t205 * t216;
+        let t219 = t144 * t162 - t193 * t217;
+        let t223 = t152 * t140 + t141 * t219 + t190 * t217;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t223 + c_proximal_leg1 * t219
+            + minus_gdistal_wx_leg1 * t217;
+        let t233 = t31 * t219 - t105 * t223 - t169 * t217;
+        let minus_rate_proximal_leg1 = t21 * t233;
+        let t235 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t236 = rate_distal_leg1 * t235;
+        let minus_rate_wrist_leg1 = 0.7071067811865475 * t10 * t223 - t29 * t219
+            - 0.7071067811865475 * t15 * t217 - t235;
+        let t246 = t236 - rate_distal_leg1 * minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t21 * t246;
+        let t248 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t239 + gdistal_wy_leg2 * t235
-            - gdistal_wy_leg2 * t233;
-        let t278 = t63 * t235 - t128 * t239 - t189 * t233;
-        let t279 = minus_s_distal_leg2 * t64 * t278;
-        let t280 = rate_distal_leg2 * t279;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * t124 * t239
-            - 0.7071067811865475 * t43 * t235 - 0.7071067811865475 * t45 * t233 - t279;
-        let t291 = t280 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t64 * t291;
-        let t293 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t223 + gdistal_wy_leg2 * t219
+            - gdistal_wy_leg2 * t217;
+        let t260 = t51 * t219 - t112 * t223 - t173 * t217;
+        let minus_rate_proximal_leg2 = t52 * t260;
+        let t262 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t263 = rate_distal_leg2 * t262;
+        let minus_rate_wrist_leg2 = t110 * t223 - 0.7071067811865475 * t35 * t219
+            - 0.7071067811865475 * t37 * t217 - t262;
+        let t273 = t263 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t52 * t273;
+        let t275 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t233
-            - (gdistal_wx_leg3 * t239 + c_proximal_leg3 * t235);
-        let t307 = t86 * t235 - t137 * t239 + t181 * t233;
-        let t308 = s_distal_leg3 * t87 * t307;
-        let t309 = rate_distal_leg3 * t308;
-        let minus_rate_wrist_leg3 = t308 + 0.7071067811865475 * t81 * t235
-            - 0.7071067811865475 * t69 * t239 + 0.7071067811865475 * t68 * t233;
-        let t320 = t309 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t87 * t320;
-        let t322 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t217
+            - (gdistal_wx_leg3 * t223 + c_proximal_leg3 * t219);
+        let t288 = t71 * t219 - t121 * t223 + t165 * t217;
+        let minus_rate_proximal_leg3 = t72 * t288;
+        let t290 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t291 = rate_distal_leg3 * t290;
+        let t296 = t24 * t219 - t5 * t223 + t11 * t217;
+        let t301 = t27 * t219 - t9 * t223 + t14 * t217;
+        let minus_rate_wrist_leg3 = t290 + 0.7071067811865475 * (t296 + t301);
+        let t306 = t291 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t72 * t306;
+        let t308 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t239
-            + minus_gdistal_wy_leg4 * t235 + minus_gdistal_wy_leg4 * t233;
-        let t336 = t110 * t235 - t145 * t239 + t195 * t233;
-        let t337 = s_distal_leg4 * t111 * t336;
-        let t338 = minus_rate_distal_leg4 * t337;
-        let minus_rate_wrist_leg4 = t337 + 0.7071067811865475 * t92 * t235
-            - 0.7071067811865475 * t141 * t239 + 0.7071067811865475 * t91 * t233;
-        let t349 = t338 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t111 * t349;
-        let t351 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t353 = minus_gproximal_wx_leg1 * t265 + minus_gproximal_wx_leg2 * t293
-            + minus_gproximal_wx_leg3 * t322 + minus_gproximal_wx_leg4 * t351;
-        let t362 = t157 * t353
-            - (minus_gproximal_wy_leg1 * t265 + minus_gproximal_wy_leg2 * t293
-                + minus_gproximal_wy_leg3 * t322 + minus_gproximal_wy_leg4 * t351);
-        let t374 = gproximal_wz_leg1 * t265 + gproximal_wz_leg2 * t293
-            - minus_gproximal_wz_leg3 * t322 - minus_gproximal_wz_leg4 * t351
-            + t206 * t353 - t209 * t362;
-        let t375 = t221 * t374;
-        let t377 = t160 * t362 - t209 * t375;
-        let t383 = t156 * t353 + t157 * t377 + t206 * t375;
-        let t388 = t39 * t377 - t120 * t383 - t185 * t375 - t263;
-        let minus_rate_dot_proximal_leg1 = t21 * t388;
-        let t391 = 6.936717523440031 * c_proximal_leg1;
-        let minus_rate_proximal_leg1 = t21 * t250;
-        let t394 = t388 + t252;
-        let t396 = t250 * rate_distal_leg1;
-        let t404 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t223
+            + minus_gdistal_wy_leg4 * t219 + minus_gdistal_wy_leg4 * t217;
+        let t321 = t92 * t219 - t129 * t223 + t179 * t217;
+        let minus_rate_proximal_leg4 = t93 * t321;
+        let t323 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t324 = minus_rate_distal_leg4 * t323;
+        let t329 = t34 * t219 - t108 * t223 + t36 * t217;
+        let minus_rate_wrist_leg4 = t323 + 0.7071067811865475 * (t329 + t301);
+        let t334 = t324 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t93 * t334;
+        let t336 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t338 = minus_gproximal_wx_leg1 * t248 + minus_gproximal_wx_leg2 * t275
+            + minus_gproximal_wx_leg3 * t308 + minus_gproximal_wx_leg4 * t336;
+        let t347 = t141 * t338
+            - (minus_gproximal_wy_leg1 * t248 + minus_gproximal_wy_leg2 * t275
+                + minus_gproximal_wy_leg3 * t308 + minus_gproximal_wy_leg4 * t336);
+        let t359 = gproximal_wz_leg1 * t248 + gproximal_wz_leg2 * t275
+            - minus_gproximal_wz_leg3 * t308 - minus_gproximal_wz_leg4 * t336
+            + t190 * t338 - t193 * t347;
+        let t360 = t205 * t359;
+        let t362 = t144 * t347 - t193 * t360;
+        let t368 = t140 * t338 + t141 * t362 + t190 * t360;
+        let t373 = t31 * t362 - t105 * t368 - t169 * t360 - t246;
+        let minus_rate_dot_proximal_leg1 = t21 * t373;
+        let t376 = 6.936717523440031 * c_proximal_leg1;
+        let t379 = t236 + t373 + t236;
+        let t386 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wx_leg2;
-        let t408 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
+        let t390 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wy_leg2;
-        let t413 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t395 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg2;
-        let t415 = minus_gproximal_wy_leg3 * t404 - minus_gproximal_wx_leg3 * t408
-            - minus_gproximal_wz_leg3 * t413;
-        ::overact::guard::platform(t415, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t415, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t415, 0.7071067811865474, "kept actuators")?;
-        let t416 = 1.0 / t415;
-        let t417 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t416;
-        let t422 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t416;
-        let t428 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t416;
-        let t430 = minus_gdistal_wx_leg1 * t417 + c_proximal_leg1 * t422
-            + minus_gdistal_wx_leg1 * t428;
-        let t431 = t250 * t251;
-        let t433 = c_distal_leg1 * t394 + minus_s_distal_leg1 * t396 + t430 * t431;
-        let t437 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t416;
-        let t442 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t416;
-        let t448 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t416;
-        let t450 = minus_gdistal_wx_leg1 * t437 + c_proximal_leg1 * t442
-            + minus_gdistal_wx_leg1 * t448;
-        let t451 = t450 * t431;
-        let t452 = t413 * t416;
-        let t454 = t408 * t416;
-        let t456 = t404 * t416;
-        let t459 = minus_gdistal_wx_leg1 * t452
-            - (minus_gdistal_wx_leg1 * t454 + c_proximal_leg1 * t456);
-        let t460 = t459 * t431;
-        let t461 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t468 = t250 * t250;
-        let t469 = t251 * t251;
-        let t470 = t468 - t469;
-        let minus_rate_dot_distal_leg1 = t250 * minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t383 + c_proximal_leg1 * t377
-            + minus_gdistal_wx_leg1 * t375 - minus_rate_dot_distal_leg1;
-        let t485 = rate_distal_leg1 * rate_distal_leg1;
-        let t508 = c_distal_leg1 * t391 - 3.4683587617200153 * t16;
-        let t513 = 6.936717523440031 * t184;
-        let t524 = t63 * t377 - t128 * t383 - t189 * t375 - t291;
-        let minus_rate_dot_proximal_leg2 = t64 * t524;
-        let t527 = 6.936717523440031 * c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t64 * t278;
-        let t534 = c_proximal_leg2 * t417 + gdistal_wy_leg2 * t422
-            - gdistal_wy_leg2 * t428;
-        let t535 = t278 * t279;
-        let t536 = t534 * t535;
-        let t537 = t524 + t280;
-        let t539 = t278 * rate_distal_leg2;
-        let t546 = gdistal_wy_leg2 * t448
-            - (c_proximal_leg2 * t437 + gdistal_wy_leg2 * t442);
-        let t548 = c_distal_leg2 * t537 + minus_s_distal_leg2 * t539 + t546 * t535;
-        let t553 = c_proximal_leg2 * t454 + gdistal_wy_leg2 * t456
-            + gdistal_wy_leg2 * t452;
-        let t554 = t553 * t535;
-        let t555 = t278 * t278;
-        let t556 = t279 * t279;
-        let t557 = t555 - t556;
-        let t559 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_rate_dot_distal_leg2 = t278 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t383 + gdistal_wy_leg2 * t377
-            - gdistal_wy_leg2 * t375 - minus_rate_dot_distal_leg2;
-        let t580 = rate_distal_leg2 * rate_distal_leg2;
-        let t601 = c_distal_leg2 * t527 - 3.4683587617200153 * t46;
-        let t607 = 6.936717523440031 * t188;
-        let t618 = t86 * t377 - t137 * t383 + t181 * t375 + t320;
-        let minus_rate_dot_proximal_leg3_2 = t87 * t618;
-        let t621 = 6.936717523440031 * c_proximal_leg3;
-        let minus_rate_proximal_leg3 = t87 * t307;
-        let t628 = gdistal_wx_leg3 * t428
-            - (gdistal_wx_leg3 * t417 + c_proximal_leg3 * t422);
-        let t629 = t307 * t308;
-        let t630 = t628 * t629;
-        let t635 = gdistal_wx_leg3 * t437 + c_proximal_leg3 * t442
-            - gdistal_wx_leg3 * t448;
-        let t636 = t635 * t629;
-        let t637 = t307 * rate_distal_leg3;
-        let t639 = t618 - t309;
-        let t646 = gdistal_wx_leg3 * t454 + c_proximal_leg3 * t456
-            + gdistal_wx_leg3 * t452;
-        let t648 = s_distal_leg3 * t637 - c_distal_leg3 * t639 + t646 * t629;
-        let t649 = t307 * t307;
-        let t650 = t308 * t308;
-        let t651 = t649 - t650;
-        let t654 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t665 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t307 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t375
-            - (gdistal_wx_leg3 * t383 + c_proximal_leg3 * t377)
+        let t397 = minus_gproximal_wy_leg3 * t386 - minus_gproximal_wx_leg3 * t390
+            - minus_gproximal_wz_leg3 * t395;
+        ::overact::guard::platform(t397, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t397, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t397, 0.7071067811865474, "kept actuators")?;
+        let t398 = 1.0 / t397;
+        let t399 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t398;
+        let t404 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t398;
+        let t410 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t398;
+        let t412 = minus_gdistal_wx_leg1 * t399 + c_proximal_leg1 * t404
+            + minus_gdistal_wx_leg1 * t410;
+        let t413 = t233 * t235;
+        let t415 = c_distal_leg1 * t379 + t412 * t413;
+        let t419 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t398;
+        let t424 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t398;
+        let t430 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t398;
+        let t432 = minus_gdistal_wx_leg1 * t419 + c_proximal_leg1 * t424
+            + minus_gdistal_wx_leg1 * t430;
+        let t433 = t432 * t413;
+        let t434 = t395 * t398;
+        let t436 = t390 * t398;
+        let t438 = t386 * t398;
+        let t441 = minus_gdistal_wx_leg1 * t434
+            - (minus_gdistal_wx_leg1 * t436 + c_proximal_leg1 * t438);
+        let t442 = t441 * t413;
+        let t443 = t233 * rate_distal_leg1;
+        let t444 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t450 = t233 * t233;
+        let t451 = t235 * t235;
+        let t452 = t450 - t451;
+        let minus_rate_dot_distal_leg1 = t233 * minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t368 + c_proximal_leg1 * t362
+            + minus_gdistal_wx_leg1 * t360 - minus_rate_dot_distal_leg1;
+        let t467 = rate_distal_leg1 * rate_distal_leg1;
+        let t488 = t15 * (-6.936717523440031);
+        let t493 = 6.936717523440031 * t168;
+        let t504 = t51 * t362 - t112 * t368 - t173 * t360 - t273;
+        let minus_rate_dot_proximal_leg2 = t52 * t504;
+        let t507 = 6.936717523440031 * c_proximal_leg2;
+        let t513 = c_proximal_leg2 * t399 + gdistal_wy_leg2 * t404
+            - gdistal_wy_leg2 * t410;
+        let t514 = t260 * t262;
+        let t515 = t513 * t514;
+        let t517 = t263 + t504 + t263;
+        let t523 = gdistal_wy_leg2 * t430
+            - (c_proximal_leg2 * t419 + gdistal_wy_leg2 * t424);
+        let t525 = c_distal_leg2 * t517 + t523 * t514;
+        let t530 = c_proximal_leg2 * t436 + gdistal_wy_leg2 * t438
+            + gdistal_wy_leg2 * t434;
+        let t531 = t530 * t514;
+        let t532 = t260 * t260;
+        let t533 = t262 * t262;
+        let t534 = t532 - t533;
+        let t536 = t260 * rate_distal_leg2;
+        let t537 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_rate_dot_distal_leg2 = t260 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t368 + gdistal_wy_leg2 * t362
+            - gdistal_wy_leg2 * t360 - minus_rate_dot_distal_leg2;
+        let t557 = rate_distal_leg2 * rate_distal_leg2;
+        let t576 = t37 * (-6.936717523440031);
+        let t582 = 6.936717523440031 * t172;
+        let t593 = t71 * t362 - t121 * t368 + t165 * t360 + t306;
+        let minus_rate_dot_proximal_leg3_2 = t72 * t593;
+        let t596 = 6.936717523440031 * c_proximal_leg3;
+        let t602 = gdistal_wx_leg3 * t410
+            - (gdistal_wx_leg3 * t399 + c_proximal_leg3 * t404);
+        let t603 = t288 * t290;
+        let t604 = t602 * t603;
+        let t609 = gdistal_wx_leg3 * t419 + c_proximal_leg3 * t424
+            - gdistal_wx_leg3 * t430;
+        let t610 = t609 * t603;
+        let t612 = t593 - t291 - t291;
+        let t618 = gdistal_wx_leg3 * t436 + c_proximal_leg3 * t438
+            + gdistal_wx_leg3 * t434;
+        let t620 = t618 * t603 - c_distal_leg3 * t612;
+        let t621 = t288 * t288;
+        let t622 = t290 * t290;
+        let t623 = t621 - t622;
+        let t626 = t288 * rate_distal_leg3;
+        let t627 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t637 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t288 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t360
+            - (gdistal_wx_leg3 * t368 + c_proximal_leg3 * t362)
             - minus_rate_dot_distal_leg3;
-        let t695 = c_distal_leg3 * t621 + 3.4683587617200153 * t70;
-        let t701 = 6.936717523440031 * t180;
-        let t711 = minus_gproximal_wx_leg4 * t417 - minus_gproximal_wy_leg4 * t422
-            - minus_gproximal_wz_leg4 * t428;
-        let t717 = t110 * t377 - t145 * t383 + t195 * t375 - t349;
-        let minus_rate_dot_proximal_leg4 = t111 * t717;
-        let t719 = t711 * minus_rate_dot_proximal_leg4;
-        let t724 = minus_gproximal_wy_leg4 * t442 - minus_gproximal_wx_leg4 * t437
-            + minus_gproximal_wz_leg4 * t448;
-        let t725 = t724 * minus_rate_dot_proximal_leg4;
-        let t730 = minus_gproximal_wy_leg4 * t456 - minus_gproximal_wx_leg4 * t454
-            - minus_gproximal_wz_leg4 * t452;
-        let t731 = t730 * minus_rate_dot_proximal_leg4;
-        let t732 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t736 = 6.936717523440031 * c_proximal_leg4;
-        let t737 = t711 * t736;
-        let t738 = t724 * t736;
-        let t739 = t730 * t736;
-        let minus_rate_proximal_leg4 = t111 * t336;
-        let t747 = t717 + t338;
-        let t749 = t336 * minus_rate_distal_leg4;
-        let t751 = c_distal_leg4 * t747 + s_distal_leg4 * t749;
-        let t757 = c_proximal_leg4 * t417 + minus_gdistal_wy_leg4 * t422
-            + minus_gdistal_wy_leg4 * t428;
-        let t758 = t336 * t337;
-        let t760 = t711 * t751 + t757 * t758;
-        let t765 = c_proximal_leg4 * t437 + minus_gdistal_wy_leg4 * t442
-            + minus_gdistal_wy_leg4 * t448;
-        let t768 = t765 * t758 - t724 * t751;
-        let t773 = c_proximal_leg4 * t454 + minus_gdistal_wy_leg4 * t456
-            - minus_gdistal_wy_leg4 * t452;
-        let t776 = t773 * t758 - t730 * t751;
-        let t779 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t783 = s_distal_leg4 * (t338 + t747) - c_distal_leg4 * (t749 + t749 - t779);
-        let t785 = t336 * t336;
-        let t786 = t337 * t337;
-        let t787 = t785 - t786;
-        let minus_rate_dot_distal_leg4 = t336 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t383
-            + minus_gdistal_wy_leg4 * t377 + minus_gdistal_wy_leg4 * t375
+        let t665 = t56 * 6.936717523440031;
+        let t671 = 6.936717523440031 * t164;
+        let t681 = minus_gproximal_wx_leg4 * t399 - minus_gproximal_wy_leg4 * t404
+            - minus_gproximal_wz_leg4 * t410;
+        let t687 = t92 * t362 - t129 * t368 + t179 * t360 - t334;
+        let minus_rate_dot_proximal_leg4 = t93 * t687;
+        let t689 = t681 * minus_rate_dot_proximal_leg4;
+        let t694 = minus_gproximal_wy_leg4 * t424 - minus_gproximal_wx_leg4 * t419
+            + minus_gproximal_wz_leg4 * t430;
+        let t695 = t694 * minus_rate_dot_proximal_leg4;
+        let t700 = minus_gproximal_wy_leg4 * t438 - minus_gproximal_wx_leg4 * t436
+            - minus_gproximal_wz_leg4 * t434;
+        let t701 = t700 * minus_rate_dot_proximal_leg4;
+        let t702 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t706 = 6.936717523440031 * c_proximal_leg4;
+        let t707 = t681 * t706;
+        let t708 = t694 * t706;
+        let t709 = t700 * t706;
+        let t717 = t324 + t687 + t324;
+        let t718 = c_distal_leg4 * t717;
+        let t724 = c_proximal_leg4 * t399 + minus_gdistal_wy_leg4 * t404
+            + minus_gdistal_wy_leg4 * t410;
+        let t725 = t321 * t323;
+        let t727 = t681 * t718 + t724 * t725;
+        let t732 = c_proximal_leg4 * t419 + minus_gdistal_wy_leg4 * t424
+            + minus_gdistal_wy_leg4 * t430;
+        let t735 = t732 * t725 - t694 * t718;
+        let t740 = c_proximal_leg4 * t436 + minus_gdistal_wy_leg4 * t438
+            - minus_gdistal_wy_leg4 * t434;
+        let t743 = t740 * t725 - t700 * t718;
+        let t745 = t321 * minus_rate_distal_leg4;
+        let t746 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t750 = s_distal_leg4 * t717 - c_distal_leg4 * (t745 + t745 - t746);
+        let t752 = t321 * t321;
+        let t753 = t323 * t323;
+        let t754 = t752 - t753;
+        let minus_rate_dot_distal_leg4 = t321 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t368
+            + minus_gdistal_wy_leg4 * t362 + minus_gdistal_wy_leg4 * t360
             + minus_rate_dot_distal_leg4;
-        let t805 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t808 = c_distal_leg4 * (t758 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t805 - t785);
-        let t826 = c_distal_leg4 * (t786 - t805)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t758);
-        let t838 = 6.936717523440031 * t145;
-        let t842 = c_distal_leg4 * t736 + 3.4683587617200153 * t93;
-        let t851 = 4.905 * t141;
-        let t853 = 6.936717523440031 * t194;
-        let t866 = t30 * t377 - t5 * t383 + t11 * t375;
-        let t872 = t30 * t235 - t5 * t239 + t11 * t233;
-        let t877 = t33 * t235 - t9 * t239 + t14 * t233;
-        let t878 = t872 * t877;
-        let t879 = t42 * t878;
-        let t885 = t42 * t235 - t123 * t239 + t44 * t233;
-        let t886 = t872 * t885;
-        let t887 = t33 * t886;
-        let t888 = t30 * t866 + t879 - t887;
-        let t891 = t123 * t878;
-        let t893 = t9 * t886;
-        let t894 = t5 * t866 + t891 - t893;
-        let t898 = t44 * t878;
-        let t900 = t14 * t886;
-        let t901 = t11 * t866 + t898 - t900;
-        let t914 = t885 * t877;
-        let t915 = t914 + t866;
-        let t921 = t42 * t377 - t123 * t383 + t44 * t375;
-        let t922 = t878 - t921;
-        let t925 = t872 * t872;
-        let t926 = t885 * t885;
-        let t927 = t925 - t926;
-        let t929 = t42 * t915 - t30 * t922 + t33 * t927;
-        let t935 = t123 * t915 - t5 * t922 + t9 * t927;
-        let t942 = t44 * t915 - t11 * t922 + t14 * t927;
-        let t959 = t33 * t377 - t9 * t383 + t14 * t375;
-        let t960 = t886 + t959;
-        let t962 = t877 * t877;
-        let t963 = t962 - t925;
-        let t966 = t914 - t866;
-        let t968 = t30 * t960 + t42 * t963 - t33 * t966;
-        let t974 = t5 * t960 + t123 * t963 - t9 * t966;
-        let t981 = t11 * t960 + t44 * t963 - t14 * t966;
-        let t995 = t30 * t914;
-        let t997 = t42 * t921 - t995 + t887;
-        let t1000 = t5 * t914;
-        let t1002 = t123 * t921 - t1000 + t893;
-        let t1006 = t11 * t914;
-        let t1008 = t44 * t921 - t1006 + t900;
-        let t1021 = t926 - t962;
-        let t1023 = t886 - t959;
-        let t1026 = t878 + t921;
-        let t1028 = t30 * t1021 - t42 * t1023 + t33 * t1026;
-        let t1034 = t5 * t1021 - t123 * t1023 + t9 * t1026;
-        let t1041 = t11 * t1021 - t44 * t1023 + t14 * t1026;
-        let t1056 = t995 - t879 + t33 * t959;
-        let t1060 = t1000 - t891 + t9 * t959;
-        let t1065 = t1006 - t898 + t14 * t959;
-        let t1078 = 9.81 * t44;
-        let t1080 = 9.81 * t14;
-        let t1082 = t33 * t1078 - t42 * t1080;
-        let t1086 = t9 * t1078 - t123 * t1080;
-        let t1096 = 9.81 * t11;
-        let t1098 = t30 * t1080 - t33 * t1096;
-        let t1102 = t5 * t1080 - t9 * t1096;
-        let t1113 = t42 * t1096 - t30 * t1078;
-        let t1117 = t123 * t1096 - t5 * t1078;
+        let t772 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t775 = c_distal_leg4 * (t725 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t772 - t752);
+        let t793 = c_distal_leg4 * (t753 - t772)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t725);
+        let t805 = 6.936717523440031 * t129;
+        let t807 = t76 * 6.936717523440031;
+        let t816 = 4.905 * t125;
+        let t818 = 6.936717523440031 * t178;
+        let t831 = t24 * t362 - t5 * t368 + t11 * t360;
+        let t833 = t296 * t301;
+        let t834 = t34 * t833;
+        let t836 = t296 * t329;
+        let t837 = t27 * t836;
+        let t838 = t24 * t831 + t834 - t837;
+        let t841 = t108 * t833;
+        let t843 = t9 * t836;
+        let t844 = t5 * t831 + t841 - t843;
+        let t848 = t36 * t833;
+        let t850 = t14 * t836;
+        let t851 = t11 * t831 + t848 - t850;
+        let t868 = t34 * t362 - t108 * t368 + t36 * t360;
+        let t869 = t868 - t833;
+        let t871 = t329 * t301;
+        let t872 = t831 + t871;
+        let t875 = t296 * t296;
+        let t876 = t329 * t329;
+        let t877 = t875 - t876;
+        let t879 = t24 * t869 + t34 * t872 + t27 * t877;
+        let t885 = t5 * t869 + t108 * t872 + t9 * t877;
+        let t892 = t11 * t869 + t36 * t872 + t14 * t877;
+        let t909 = t27 * t362 - t9 * t368 + t14 * t360;
+        let t910 = t909 + t836;
+        let t912 = t301 * t301;
+        let t913 = t912 - t875;
+        let t916 = t831 - t871;
+        let t918 = t24 * t910 + t34 * t913 + t27 * t916;
+        let t924 = t5 * t910 + t108 * t913 + t9 * t916;
+        let t931 = t11 * t910 + t36 * t913 + t14 * t916;
+        let t945 = t24 * t871;
+        let t947 = t34 * t868 - t945 + t837;
+        let t950 = t5 * t871;
+        let t952 = t108 * t868 - t950 + t843;
+        let t956 = t11 * t871;
+        let t958 = t36 * t868 - t956 + t850;
+        let t971 = t876 - t912;
+        let t973 = t909 - t836;
+        let t976 = t868 + t833;
+        let t978 = t24 * t971 + t34 * t973 + t27 * t976;
+        let t984 = t5 * t971 + t108 * t973 + t9 * t976;
+        let t991 = t11 * t971 + t36 * t973 + t14 * t976;
+        let t1006 = t945 - t834 + t27 * t909;
+        let t1010 = t950 - t841 + t9 * t909;
+        let t1015 = t956 - t848 + t14 * t909;
+        let t1028 = 9.81 * t24;
+        let t1030 = 9.81 * t5;
+        let t1039 = 9.81 * t34;
+        let t1041 = 9.81 * t108;
+        let t1050 = 9.81 * t27;
+        let t1052 = 9.81 * t9;
         Ok([
             [
-                -minus_rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t391,
+                -minus_rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t376,
                 -minus_rate_dot_proximal_leg1, -minus_rate_proximal_leg1,
-                -::overact::math::sign(minus_rate_proximal_leg1), 1.0, -t433,
-                c_distal_leg1 * (t396 - (t461 - t396))
-                    - minus_s_distal_leg1 * (t252 + t394) + t430 * t470,
-                t430 * t388
-                    - (c_distal_leg1 * (t431 + rate_dot_distal_leg1)
-                        + minus_s_distal_leg1 * (t485 - t468)),
-                t433 - minus_rate_dot_proximal_leg1,
-                minus_s_distal_leg1 * (t431 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t469 - t485) + t430 * t461,
-                t430 * rate_dot_distal_leg1,
-                6.936717523440031 * t39 + t430 * t508,
-                t430 * t513 - 4.905 * t34,
-                t391,
+                -::overact::math::sign(minus_rate_proximal_leg1), 1.0, -t415,
+                c_distal_leg1 * (t443 - (t444 - t443)) - minus_s_distal_leg1 * t379
+                    + t412 * t452,
+                t412 * t373
+                    - (c_distal_leg1 * (t413 + rate_dot_distal_leg1)
+                        + minus_s_distal_leg1 * (t467 - t450)),
+                t415 - minus_rate_dot_proximal_leg1,
+                minus_s_distal_leg1 * (t413 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t451 - t467) + t412 * t444,
+                t412 * rate_dot_distal_leg1,
+                6.936717523440031 * t31 + t412 * t488,
+                t412 * t493 - 4.905 * t28,
+                t376,
                 0.0,
                 0.0,
                 0.0,
@@ -5108,14 +4960,14 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                -t536,
-                t534 * t557,
-                t534 * t524,
-                t536,
-                t534 * t559,
-                t534 * rate_dot_distal_leg2,
-                t534 * t601,
-                t534 * t607,
+                -t515,
+                t513 * t534,
+                t513 * t504,
+                t515,
+                t513 * t537,
+                t513 * rate_dot_distal_leg2,
+                t513 * t576,
+                t513 * t582,
                 0.0,
                 0.0,
                 0.0,
@@ -5124,59 +4976,59 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t630,
-                t628 * t651,
-                t628 * t618,
-                -t630,
-                -(t628 * t654),
-                t628 * rate_dot_distal_leg3,
-                t628 * t695,
-                -(t628 * t701),
+                t604,
+                t602 * t623,
+                t602 * t593,
+                -t604,
+                -(t602 * t627),
+                t602 * rate_dot_distal_leg3,
+                t602 * t665,
+                -(t602 * t671),
                 0.0,
-                -t719,
-                t711 * t732,
-                -t737,
-                -t719,
-                -(t711 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t711, minus_rate_proximal_leg4),
-                t711,
-                -t760,
-                t711 * t783 - t757 * t787,
-                t711 * t808 - t757 * t717,
-                t760 - t719,
-                t757 * t779 - t711 * t826,
-                t757 * minus_rate_dot_distal_leg4_2,
-                t711 * t838 - t757 * t842,
-                t711 * t851 + t757 * t853,
-                t737,
-                t422 * t888 - t417 * t894 + t428 * t901,
-                t422 * t929 - t417 * t935 + t428 * t942,
-                t422 * t968 - t417 * t974 + t428 * t981,
-                t422 * t997 - t417 * t1002 + t428 * t1008,
-                t422 * t1028 - t417 * t1034 + t428 * t1041,
-                t422 * t1056 - t417 * t1060 + t428 * t1065,
-                t422 * t1082 - t417 * t1086,
-                t422 * t1098 - t417 * t1102,
-                t422 * t1113 - t417 * t1117,
+                -t689,
+                t681 * t702,
+                -t707,
+                -t689,
+                -(t681 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t681, minus_rate_proximal_leg4),
+                t681,
+                -t727,
+                t681 * t750 - t724 * t754,
+                t681 * t775 - t724 * t687,
+                t727 - t689,
+                t724 * t746 - t681 * t793,
+                t724 * minus_rate_dot_distal_leg4_2,
+                t681 * t805 - t724 * t807,
+                t681 * t816 + t724 * t818,
+                t707,
+                t404 * t838 - t399 * t844 + t410 * t851,
+                t404 * t879 - t399 * t885 + t410 * t892,
+                t404 * t918 - t399 * t924 + t410 * t931,
+                t404 * t947 - t399 * t952 + t410 * t958,
+                t404 * t978 - t399 * t984 + t410 * t991,
+                t404 * t1006 - t399 * t1010 + t410 * t1015,
+                -(t399 * t1028 + t404 * t1030),
+                -(t399 * t1039 + t404 * t1041),
+                -(t399 * t1050 + t404 * t1052),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t451, -(t450 * t470), -(t450 * t388), -t451,
-                -(t450 * t461), -(t450 * rate_dot_distal_leg1), -(t450 * t508), -(t450 * t513), 0.0,
-                -minus_rate_dot_proximal_leg2, 6.936717523440031 * minus_s_proximal_leg2, -t527,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t433, -(t432 * t452), -(t432 * t373), -t433,
+                -(t432 * t444), -(t432 * rate_dot_distal_leg1), -(t432 * t488), -(t432 * t493), 0.0,
+                -minus_rate_dot_proximal_leg2, 6.936717523440031 * minus_s_proximal_leg2, -t507,
                 -minus_rate_dot_proximal_leg2, -minus_rate_proximal_leg2,
-                -::overact::math::sign(minus_rate_proximal_leg2), 1.0, -t548,
-                c_distal_leg2 * (t539 - (t559 - t539))
-                    - minus_s_distal_leg2 * (t280 + t537) + t546 * t557,
-                t546 * t524
-                    - (c_distal_leg2 * (t535 + rate_dot_distal_leg2)
-                        + minus_s_distal_leg2 * (t580 - t555)),
-                t548 - minus_rate_dot_proximal_leg2,
-                minus_s_distal_leg2 * (t535 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t556 - t580) + t546 * t559,
-                t546 * rate_dot_distal_leg2,
-                t546 * t601 - 6.936717523440031 * t128,
-                4.905 * t124 + t546 * t607,
-                t527,
+                -::overact::math::sign(minus_rate_proximal_leg2), 1.0, -t525,
+                c_distal_leg2 * (t536 - (t537 - t536)) - minus_s_distal_leg2 * t517
+                    + t523 * t534,
+                t523 * t504
+                    - (c_distal_leg2 * (t514 + rate_dot_distal_leg2)
+                        + minus_s_distal_leg2 * (t557 - t532)),
+                t525 - minus_rate_dot_proximal_leg2,
+                minus_s_distal_leg2 * (t514 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t533 - t557) + t523 * t537,
+                t523 * rate_dot_distal_leg2,
+                t523 * t576 - 6.936717523440031 * t112,
+                4.905 * t109 + t523 * t582,
+                t507,
                 0.0,
                 0.0,
                 0.0,
@@ -5184,85 +5036,85 @@ impl Spherical4Rrr {
                 0.0,
                 0.0,
                 0.0,
-                t636,
-                t635 * t651,
-                t635 * t618,
-                -t636,
-                -(t635 * t654),
-                t635 * rate_dot_distal_leg3,
-                t635 * t695,
-                -(t635 * t701),
+                t610,
+                t609 * t623,
+                t609 * t593,
+                -t610,
+                -(t609 * t627),
+                t609 * rate_dot_distal_leg3,
+                t609 * t665,
+                -(t609 * t671),
                 0.0,
-                -t725,
-                t724 * t732,
-                -t738,
-                -t725,
-                -(t724 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t724, minus_rate_proximal_leg4),
-                t724,
-                t768,
-                t724 * t783 + t765 * t787,
-                t724 * t808 + t765 * t717,
-                -(t725 + t768),
-                -(t724 * t826 + t765 * t779),
-                -(t765 * minus_rate_dot_distal_leg4_2),
-                t724 * t838 + t765 * t842,
-                t724 * t851 - t765 * t853,
-                t738,
-                t437 * t894 - t442 * t888 - t448 * t901,
-                t437 * t935 - t442 * t929 - t448 * t942,
-                t437 * t974 - t442 * t968 - t448 * t981,
-                t437 * t1002 - t442 * t997 - t448 * t1008,
-                t437 * t1034 - t442 * t1028 - t448 * t1041,
-                t437 * t1060 - t442 * t1056 - t448 * t1065,
-                t437 * t1086 - t442 * t1082,
-                t437 * t1102 - t442 * t1098,
-                t437 * t1117 - t442 * t1113,
+                -t695,
+                t694 * t702,
+                -t708,
+                -t695,
+                -(t694 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t694, minus_rate_proximal_leg4),
+                t694,
+                t735,
+                t694 * t750 + t732 * t754,
+                t694 * t775 + t732 * t687,
+                -(t695 + t735),
+                -(t694 * t793 + t732 * t746),
+                -(t732 * minus_rate_dot_distal_leg4_2),
+                t694 * t805 + t732 * t807,
+                t694 * t816 - t732 * t818,
+                t708,
+                t419 * t844 - t424 * t838 - t430 * t851,
+                t419 * t885 - t424 * t879 - t430 * t892,
+                t419 * t924 - t424 * t918 - t430 * t931,
+                t419 * t952 - t424 * t947 - t430 * t958,
+                t419 * t984 - t424 * t978 - t430 * t991,
+                t419 * t1010 - t424 * t1006 - t430 * t1015,
+                t419 * t1028 + t424 * t1030,
+                t419 * t1039 + t424 * t1041,
+                t419 * t1050 + t424 * t1052,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t460, t459 * t470, t459 * t388, t460,
-                t459 * t461, t459 * rate_dot_distal_leg1, t459 * t508, t459 * t513, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t554, -(t553 * t557), -(t553 * t524), -t554,
-                -(t553 * t559), -(t553 * rate_dot_distal_leg2), -(t553 * t601), -(t553 * t607), 0.0,
-                -minus_rate_dot_proximal_leg3_2, -(6.936717523440031 * s_proximal_leg3), -t621,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t442, t441 * t452, t441 * t373, t442,
+                t441 * t444, t441 * rate_dot_distal_leg1, t441 * t488, t441 * t493, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t531, -(t530 * t534), -(t530 * t504), -t531,
+                -(t530 * t537), -(t530 * rate_dot_distal_leg2), -(t530 * t576), -(t530 * t582), 0.0,
+                -minus_rate_dot_proximal_leg3_2, -(6.936717523440031 * s_proximal_leg3), -t596,
                 -minus_rate_dot_proximal_leg3_2, -minus_rate_proximal_leg3,
-                -::overact::math::sign(minus_rate_proximal_leg3), 1.0, t648,
-                c_distal_leg3 * (t637 + t654 + t637) + s_distal_leg3 * (t639 - t309)
-                    + t646 * t651,
-                s_distal_leg3 * (t665 - t649)
-                    - c_distal_leg3 * (rate_dot_distal_leg3 - t629) + t646 * t618,
-                -(minus_rate_dot_proximal_leg3_2 + t648),
-                s_distal_leg3 * (t629 + rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t650 - t665) - t646 * t654,
-                t646 * rate_dot_distal_leg3,
-                t646 * t695 - 6.936717523440031 * t86,
-                -(4.905 * t81 + t646 * t701),
-                t621,
-                -t731,
-                t730 * t732,
-                -t739,
-                -t731,
-                -(t730 * minus_rate_proximal_leg4),
-                -::overact::math::signed(t730, minus_rate_proximal_leg4),
-                t730,
-                t776,
-                t730 * t783 + t773 * t787,
-                t730 * t808 + t773 * t717,
-                -(t731 + t776),
-                -(t730 * t826 + t773 * t779),
-                -(t773 * minus_rate_dot_distal_leg4_2),
-                t730 * t838 + t773 * t842,
-                t730 * t851 - t773 * t853,
-                t739,
-                t454 * t894 - t456 * t888 + t452 * t901,
-                t454 * t935 - t456 * t929 + t452 * t942,
-                t454 * t974 - t456 * t968 + t452 * t981,
-                t454 * t1002 - t456 * t997 + t452 * t1008,
-                t454 * t1034 - t456 * t1028 + t452 * t1041,
-                t454 * t1060 - t456 * t1056 + t452 * t1065,
-                t454 * t1086 - t456 * t1082,
-                t454 * t1102 - t456 * t1098,
-                t454 * t1117 - t456 * t1113,
+                -::overact::math::sign(minus_rate_proximal_leg3), 1.0, t620,
+                c_distal_leg3 * (t626 + t627 + t626) + s_distal_leg3 * t612
+                    + t618 * t623,
+                s_distal_leg3 * (t637 - t621)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t603) + t618 * t593,
+                -(minus_rate_dot_proximal_leg3_2 + t620),
+                s_distal_leg3 * (t603 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t622 - t637) - t618 * t627,
+                t618 * rate_dot_distal_leg3,
+                t618 * t665 - 6.936717523440031 * t71,
+                -(4.905 * t67 + t618 * t671),
+                t596,
+                -t701,
+                t700 * t702,
+                -t709,
+                -t701,
+                -(t700 * minus_rate_proximal_leg4),
+                -::overact::math::signed(t700, minus_rate_proximal_leg4),
+                t700,
+                t743,
+                t700 * t750 + t740 * t754,
+                t700 * t775 + t740 * t687,
+                -(t701 + t743),
+                -(t700 * t793 + t740 * t746),
+                -(t740 * minus_rate_dot_distal_leg4_2),
+                t700 * t805 + t740 * t807,
+                t700 * t816 - t740 * t818,
+                t709,
+                t436 * t844 - t438 * t838 + t434 * t851,
+                t436 * t885 - t438 * t879 + t434 * t892,
+                t436 * t924 - t438 * t918 + t434 * t931,
+                t436 * t952 - t438 * t947 + t434 * t958,
+                t436 * t984 - t438 * t978 + t434 * t991,
+                t436 * t1010 - t438 * t1006 + t434 * t1015,
+                t436 * t1028 + t438 * t1030,
+                t436 * t1039 + t438 * t1041,
+                t436 * t1050 + t438 * t1052,
             ],
         ])
     }
@@ -5276,7 +5128,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 806 operations (286 additions, 512 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 666 intermediates.
+    /// 697 operations (260 additions, 433 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 557 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5318,291 +5170,257 @@ impl Spherical4Rrr {
         let t53 = t29 * t47;
         let t56 = t44 * t37;
         let t58 = t34 * t47;
-        let t60 = t46 * t36;
-        let t61 = t60 + t17;
-        let t67 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
-        let t68 = t37 - t67;
+        let t64 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
+        let t65 = t64 - t37;
+        let t67 = t46 * t36;
+        let t68 = t17 + t67;
         let t71 = t24 * t24;
         let t72 = t46 * t46;
         let t73 = t71 - t72;
         let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
-        let t91 = t47 + t90;
+        let t91 = t90 + t47;
         let t93 = t36 * t36;
         let t94 = t93 - t71;
-        let t97 = t60 - t17;
-        let t111 = t5 * t60;
-        let t115 = t10 * t60;
-        let t119 = t15 * t60;
+        let t97 = t17 - t67;
+        let t111 = t5 * t67;
+        let t115 = t10 * t67;
+        let t119 = t15 * t67;
         let t122 = t72 - t93;
-        let t124 = t47 - t90;
-        let t127 = t37 + t67;
-        let t149 = 9.81 * t44;
-        let t151 = 9.81 * t34;
-        let t158 = 9.81 * t15;
-        let t170 = t5 - t25;
-        let t171 = t15 - t34;
-        let t172 = t170 + t171;
-        let minus_s_distal_leg1 = 0.5 * t172;
-        let t176 = 1.0 - 0.25 * (t172 * t172);
-        ::overact::guard::reach(t176, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t176);
+        let t124 = t90 - t47;
+        let t127 = t64 + t37;
+        let t155 = t5 - t25;
+        let t156 = t15 - t34;
+        let minus_s_distal_leg1 = 0.5 * (t155 + t156);
+        let t160 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t160, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t160);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t182 = 1.0 / (0.5 * (t170 * c_distal_leg1 - t171 * c_distal_leg1));
-        let t183 = t170 - t171;
-        let c_proximal_leg1 = t182 * (0.25 * (t183 * t183));
-        let t187 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t189 = 0.7071067811865475 * (t187 - c_distal_leg1);
-        let t190 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t189 * t190;
-        let t193 = t10 - t29;
-        let s_proximal_leg1 = t182 * (0.35355339059327373 * (t193 * t183));
-        let t197 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t201 = 0.7071067811865475 * (t187 + c_distal_leg1);
+        let t162 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t162 * (t155 - minus_s_distal_leg1);
+        let t165 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t167 = 0.7071067811865475 * (t165 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t167 * t162;
+        let s_proximal_leg1 = t162 * (0.7071067811865475 * (t10 - t29));
+        let t173 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t177 = 0.7071067811865475 * (t165 + c_distal_leg1);
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t210 = minus_s_distal_leg1 * t190;
-        let t215 = t189 * twist[0] + t197 * twist[1] - t201 * twist[2];
-        let t216 = t210 * t215;
-        let t217 = rate_distal_leg1 * t216;
-        let t220 = 0.7071067811865475 * t193;
-        let rate_wrist_leg1 = t216 + 0.7071067811865475 * t170 * twist[0]
-            + t220 * twist[1] + 0.7071067811865475 * t171 * twist[2];
-        let t229 = t189 * acceleration[0] + t197 * acceleration[1]
-            - t201 * acceleration[2] - (t217 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t190 * t229;
-        let minus_gproximal_wy_leg1 = t197 * t190;
-        let gproximal_wz_leg1 = t201 * t190;
-        let t236 = t41 - t29;
-        let t237 = t44 - t34;
-        let t238 = t236 + t237;
-        let minus_s_distal_leg2 = 0.5 * t238;
-        let t242 = 1.0 - 0.25 * (t238 * t238);
-        ::overact::guard::reach(t242, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t242);
+        let t186 = minus_s_distal_leg1 * t162;
+        let t191 = t167 * twist[0] + t173 * twist[1] - t177 * twist[2];
+        let t192 = t186 * t191;
+        let t193 = rate_distal_leg1 * t192;
+        let rate_wrist_leg1 = t192 + 0.7071067811865475 * (t24 - t36);
+        let t199 = t167 * acceleration[0] + t173 * acceleration[1]
+            - t177 * acceleration[2] - (t193 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t162 * t199;
+        let minus_gproximal_wy_leg1 = t173 * t162;
+        let gproximal_wz_leg1 = t177 * t162;
+        let t206 = t41 - t29;
+        let t207 = t44 - t34;
+        let minus_s_distal_leg2 = 0.5 * (t206 + t207);
+        let t211 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t211, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t211);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t248 = 1.0 / (0.5 * (t236 * c_distal_leg2 - t237 * c_distal_leg2));
-        let t249 = t19 - t25;
-        let t250 = t236 - t237;
-        let minus_s_proximal_leg2 = t248 * (0.35355339059327373 * (t249 * t250));
-        let t254 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let t255 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t254 * t255;
-        let c_proximal_leg2 = t248 * (0.25 * (t250 * t250));
-        let t261 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t263 = 0.7071067811865475 * (t261 - c_distal_leg2);
-        let t267 = 0.7071067811865475 * (t261 + c_distal_leg2);
+        let t213 = 1.0 / c_distal_leg2;
+        let minus_s_proximal_leg2 = t213 * (0.7071067811865475 * (t19 - t25));
+        let t217 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t217 * t213;
+        let c_proximal_leg2 = t213 * (t206 - minus_s_distal_leg2);
+        let t222 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t224 = 0.7071067811865475 * (t222 - c_distal_leg2);
+        let t228 = 0.7071067811865475 * (t222 + c_distal_leg2);
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t276 = minus_s_distal_leg2 * t255;
-        let t281 = t254 * twist[0] + t263 * twist[1] - t267 * twist[2];
-        let t282 = t276 * t281;
-        let t283 = rate_distal_leg2 * t282;
-        let t284 = 0.7071067811865475 * t249;
-        let rate_wrist_leg2 = t282 + t284 * twist[0]
-            + 0.7071067811865475 * t236 * twist[1]
-            + 0.7071067811865475 * t237 * twist[2];
-        let t295 = t254 * acceleration[0] + t263 * acceleration[1]
-            - t267 * acceleration[2] - (t283 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t255 * t295;
-        let minus_gproximal_wy_leg2 = t263 * t255;
-        let gproximal_wz_leg2 = t267 * t255;
-        let t302 = t15 + t34;
-        let t303 = t5 + t25;
-        let t304 = t302 - t303;
-        let s_distal_leg3 = 0.5 * t304;
-        let t308 = 1.0 - 0.25 * (t304 * t304);
-        ::overact::guard::reach(t308, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t308);
+        let t237 = minus_s_distal_leg2 * t213;
+        let t242 = t217 * twist[0] + t224 * twist[1] - t228 * twist[2];
+        let t243 = t237 * t242;
+        let t244 = rate_distal_leg2 * t243;
+        let rate_wrist_leg2 = t243 - 0.7071067811865475 * (t36 - t46);
+        let t250 = t217 * acceleration[0] + t224 * acceleration[1]
+            - t228 * acceleration[2] - (t244 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t213 * t250;
+        let minus_gproximal_wy_leg2 = t224 * t213;
+        let gproximal_wz_leg2 = t228 * t213;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t34);
+        let t260 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t260, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t260);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t314 = 1.0 / (0.5 * (t303 * c_distal_leg3 + t302 * c_distal_leg3));
-        let t315 = t303 + t302;
-        let c_proximal_leg3 = t314 * (0.25 * (t315 * t315));
-        let t319 = s_distal_leg3 * c_proximal_leg3;
-        let t321 = 0.7071067811865475 * (t319 + c_distal_leg3);
-        let t322 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = t321 * t322;
-        let t325 = t10 + t29;
-        let s_proximal_leg3 = t314 * (0.35355339059327373 * (t325 * t315));
-        let t329 = s_distal_leg3 * s_proximal_leg3;
-        let t333 = 0.7071067811865475 * (t319 - c_distal_leg3);
+        let t262 = 1.0 / c_distal_leg3;
+        let t263 = t15 + t34;
+        let c_proximal_leg3 = t262 * (t263 - s_distal_leg3);
+        let t266 = s_distal_leg3 * c_proximal_leg3;
+        let t268 = 0.7071067811865475 * (t266 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t268 * t262;
+        let s_proximal_leg3 = t262 * (0.7071067811865475 * (t10 + t29));
+        let t274 = s_distal_leg3 * s_proximal_leg3;
+        let t278 = 0.7071067811865475 * (t266 - c_distal_leg3);
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t342 = s_distal_leg3 * t322;
-        let t347 = t321 * twist[0] + t329 * twist[1] + t333 * twist[2];
-        let t348 = t342 * t347;
-        let t349 = rate_distal_leg3 * t348;
-        let t352 = 0.7071067811865475 * t325;
-        let minus_rate_wrist_leg3 = t348 + 0.7071067811865475 * t303 * twist[0]
-            + t352 * twist[1] + 0.7071067811865475 * t302 * twist[2];
-        let t361 = t321 * acceleration[0] + t329 * acceleration[1]
-            + t333 * acceleration[2] + t349 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t322 * t361;
-        let minus_gproximal_wy_leg3 = t329 * t322;
-        let minus_gproximal_wz_leg3 = t333 * t322;
-        let t368 = t44 + t34;
-        let t369 = t41 + t29;
-        let t370 = t368 - t369;
-        let s_distal_leg4 = 0.5 * t370;
-        let t374 = 1.0 - 0.25 * (t370 * t370);
-        ::overact::guard::reach(t374, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t374);
+        let t287 = s_distal_leg3 * t262;
+        let t292 = t268 * twist[0] + t274 * twist[1] + t278 * twist[2];
+        let t293 = t287 * t292;
+        let t294 = rate_distal_leg3 * t293;
+        let minus_rate_wrist_leg3 = t293 + 0.7071067811865475 * (t24 + t36);
+        let t300 = t268 * acceleration[0] + t274 * acceleration[1]
+            + t278 * acceleration[2] + t294 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t262 * t300;
+        let minus_gproximal_wy_leg3 = t274 * t262;
+        let minus_gproximal_wz_leg3 = t278 * t262;
+        let minus_s_distal_leg4 = minus_s_distal_leg2 + t29 - t44;
+        let t310 = 1.0 - minus_s_distal_leg4 * minus_s_distal_leg4;
+        ::overact::guard::reach(t310, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t310);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t380 = 1.0 / (0.5 * (t369 * c_distal_leg4 + t368 * c_distal_leg4));
-        let t381 = t19 + t25;
-        let t382 = t369 + t368;
-        let minus_s_proximal_leg4 = t380 * (0.35355339059327373 * (t381 * t382));
-        let t386 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t387 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t386 * t387;
-        let c_proximal_leg4 = t380 * (0.25 * (t382 * t382));
-        let t393 = s_distal_leg4 * c_proximal_leg4;
-        let t395 = 0.7071067811865475 * (t393 + c_distal_leg4);
-        let t399 = 0.7071067811865475 * (t393 - c_distal_leg4);
+        let t312 = 1.0 / c_distal_leg4;
+        let minus_s_proximal_leg4 = t312 * (0.7071067811865475 * (t19 + t25));
+        let t316 = minus_s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_minus_gproximal_wx_leg4 = t316 * t312;
+        let t319 = t44 + t34;
+        let c_proximal_leg4 = t312 * (t319 + minus_s_distal_leg4);
+        let t322 = minus_s_distal_leg4 * c_proximal_leg4;
+        let t324 = 0.7071067811865475 * (c_distal_leg4 - t322);
+        let t328 = 0.7071067811865475 * (t322 + c_distal_leg4);
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t408 = s_distal_leg4 * t387;
-        let t413 = t386 * twist[0] + t395 * twist[1] + t399 * twist[2];
-        let t414 = t408 * t413;
-        let t415 = rate_distal_leg4 * t414;
-        let t416 = 0.7071067811865475 * t381;
-        let minus_rate_wrist_leg4 = t414 + t416 * twist[0]
-            + 0.7071067811865475 * t369 * twist[1]
-            + 0.7071067811865475 * t368 * twist[2];
-        let t427 = t386 * acceleration[0] + t395 * acceleration[1]
-            + t399 * acceleration[2] + t415 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t387 * t427;
-        let minus_gproximal_wy_leg4 = t395 * t387;
-        let minus_gproximal_wz_leg4 = t399 * t387;
-        let t434 = 6.936717523440031 * s_proximal_leg1;
-        let t438 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t442 = 6.936717523440031 * s_proximal_leg3;
-        let t446 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t450 = 6.936717523440031 * c_proximal_leg1;
-        let t454 = 6.936717523440031 * c_proximal_leg2;
-        let t458 = 6.936717523440031 * c_proximal_leg3;
-        let t462 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t190 * t215;
-        let minus_rate_proximal_leg2 = t255 * t281;
-        let minus_rate_proximal_leg3 = t322 * t347;
-        let minus_rate_proximal_leg4 = t387 * t413;
-        let t494 = t229 + t217;
-        let t496 = t215 * rate_distal_leg1;
-        let t498 = c_distal_leg1 * t494 + minus_s_distal_leg1 * t496;
-        let t500 = t215 * t216;
-        let t501 = minus_gdistal_wx_leg1 * t500;
-        let t508 = t295 + t283;
-        let t510 = t281 * rate_distal_leg2;
-        let t512 = c_distal_leg2 * t508 + minus_s_distal_leg2 * t510;
-        let t514 = t281 * t282;
-        let t518 = gdistal_wy_leg2 * t514;
-        let t522 = t347 * t348;
-        let t523 = gdistal_wx_leg3 * t522;
-        let t524 = t347 * rate_distal_leg3;
-        let t526 = t361 - t349;
-        let t528 = s_distal_leg3 * t524 - c_distal_leg3 * t526;
-        let t536 = t413 * t414;
-        let t538 = t413 * rate_distal_leg4;
-        let t540 = t427 - t415;
-        let t542 = s_distal_leg4 * t538 - c_distal_leg4 * t540;
-        let t546 = minus_gdistal_wy_leg4 * t536;
-        let t550 = t210 * t229;
-        let t556 = c_distal_leg1 * (t496 - (t550 - t496))
-            - minus_s_distal_leg1 * (t217 + t494);
-        let t558 = t215 * t215;
-        let t559 = t216 * t216;
-        let t560 = t558 - t559;
-        let t561 = minus_gdistal_wx_leg1 * t560;
-        let t568 = t276 * t295;
-        let t574 = c_distal_leg2 * (t510 - (t568 - t510))
-            - minus_s_distal_leg2 * (t283 + t508);
-        let t576 = t281 * t281;
-        let t577 = t282 * t282;
-        let t578 = t576 - t577;
-        let t581 = gdistal_wy_leg2 * t578;
-        let t586 = t347 * t347;
-        let t587 = t348 * t348;
-        let t588 = t586 - t587;
-        let t589 = gdistal_wx_leg3 * t588;
-        let t590 = t342 * t361;
-        let t596 = c_distal_leg3 * (t524 + t590 + t524) + s_distal_leg3 * (t526 - t349);
-        let t604 = t413 * t413;
-        let t605 = t414 * t414;
-        let t606 = t604 - t605;
-        let t608 = t408 * t427;
-        let t614 = c_distal_leg4 * (t538 + t608 + t538) + s_distal_leg4 * (t540 - t415);
-        let t618 = minus_gdistal_wy_leg4 * t606;
+        let t337 = minus_s_distal_leg4 * t312;
+        let t342 = t324 * twist[1] - t316 * twist[0] - t328 * twist[2];
+        let t343 = t337 * t342;
+        let t344 = rate_distal_leg4 * t343;
+        let minus_rate_wrist_leg4 = 0.7071067811865475 * (t46 + t36) - t343;
+        let t350 = t324 * acceleration[1] - t316 * acceleration[0]
+            - t328 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4 - t344;
+        let minus_rate_dot_proximal_leg4 = t312 * t350;
+        let minus_gproximal_wy_leg4 = t324 * t312;
+        let minus_minus_gproximal_wz_leg4 = t328 * t312;
+        let t357 = 6.936717523440031 * s_proximal_leg1;
+        let t361 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t365 = 6.936717523440031 * s_proximal_leg3;
+        let t369 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t373 = 6.936717523440031 * c_proximal_leg1;
+        let t377 = 6.936717523440031 * c_proximal_leg2;
+        let t381 = 6.936717523440031 * c_proximal_leg3;
+        let t385 = 6.936717523440031 * c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t162 * t191;
+        let minus_rate_proximal_leg2 = t213 * t242;
+        let minus_rate_proximal_leg3 = t262 * t292;
+        let minus_rate_proximal_leg4 = t312 * t342;
+        let t418 = t193 + t199 + t193;
+        let t419 = c_distal_leg1 * t418;
+        let t421 = t191 * t192;
+        let t422 = minus_gdistal_wx_leg1 * t421;
+        let t430 = t244 + t250 + t244;
+        let t431 = c_distal_leg2 * t430;
+        let t433 = t242 * t243;
+        let t437 = gdistal_wy_leg2 * t433;
+        let t441 = t292 * t293;
+        let t442 = gdistal_wx_leg3 * t441;
+        let t444 = t300 - t294 - t294;
+        let t445 = c_distal_leg3 * t444;
+        let t453 = t342 * t343;
+        let t456 = t350 + t344 + t344;
+        let t457 = c_distal_leg4 * t456;
+        let t461 = minus_gdistal_wy_leg4 * t453;
+        let t465 = t191 * rate_distal_leg1;
+        let t466 = t186 * t199;
+        let t471 = c_distal_leg1 * (t465 - (t466 - t465)) - minus_s_distal_leg1 * t418;
+        let t473 = t191 * t191;
+        let t474 = t192 * t192;
+        let t475 = t473 - t474;
+        let t476 = minus_gdistal_wx_leg1 * t475;
+        let t483 = t242 * rate_distal_leg2;
+        let t484 = t237 * t250;
+        let t489 = c_distal_leg2 * (t483 - (t484 - t483)) - minus_s_distal_leg2 * t430;
+        let t491 = t242 * t242;
+        let t492 = t243 * t243;
+        let t493 = t491 - t492;
+        let t496 = gdistal_wy_leg2 * t493;
+        let t501 = t292 * t292;
+        let t502 = t293 * t293;
+        let t503 = t501 - t502;
+        let t504 = gdistal_wx_leg3 * t503;
+        let t505 = t292 * rate_distal_leg3;
+        let t506 = t287 * t300;
+        let t511 = c_distal_leg3 * (t505 + t506 + t505) + s_distal_leg3 * t444;
+        let t519 = t342 * t342;
+        let t520 = t343 * t343;
+        let t521 = t519 - t520;
+        let t523 = t342 * rate_distal_leg4;
+        let t524 = t337 * t350;
+        let t529 = c_distal_leg4 * (t523 + t523 - t524) - minus_s_distal_leg4 * t456;
+        let t533 = minus_gdistal_wy_leg4 * t521;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t215 * rate_wrist_leg1;
-        let t631 = rate_distal_leg1 * rate_distal_leg1;
-        let t634 = c_distal_leg1 * (t500 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t631 - t558);
-        let t636 = minus_gdistal_wx_leg1 * t229;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t191 * rate_wrist_leg1;
+        let t546 = rate_distal_leg1 * rate_distal_leg1;
+        let t549 = c_distal_leg1 * (t421 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t546 - t473);
+        let t551 = minus_gdistal_wx_leg1 * t199;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t281 * rate_wrist_leg2;
-        let t652 = rate_distal_leg2 * rate_distal_leg2;
-        let t655 = c_distal_leg2 * (t514 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t652 - t576);
-        let t660 = gdistal_wy_leg2 * t295;
-        let t664 = gdistal_wx_leg3 * t361;
-        let t665 = rate_distal_leg3 * rate_distal_leg3;
+            + t242 * rate_wrist_leg2;
+        let t567 = rate_distal_leg2 * rate_distal_leg2;
+        let t570 = c_distal_leg2 * (t433 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t567 - t491);
+        let t575 = gdistal_wy_leg2 * t250;
+        let t579 = gdistal_wx_leg3 * t300;
+        let t580 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t347 * minus_rate_wrist_leg3;
-        let t677 = s_distal_leg3 * (t665 - t586)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t522);
-        let t686 = rate_distal_leg4 * rate_distal_leg4;
+            - t292 * minus_rate_wrist_leg3;
+        let t592 = s_distal_leg3 * (t580 - t501)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t441);
+        let t601 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t413 * minus_rate_wrist_leg4;
-        let t698 = s_distal_leg4 * (t686 - t604)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t536);
-        let t702 = minus_gdistal_wy_leg4 * t427;
-        let t710 = minus_s_distal_leg1 * (t500 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t559 - t631);
-        let t712 = minus_gdistal_wx_leg1 * t550;
-        let t723 = minus_s_distal_leg2 * (t514 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t577 - t652);
-        let t727 = gdistal_wy_leg2 * t568;
-        let t736 = s_distal_leg3 * (t522 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t587 - t665);
-        let t738 = gdistal_wx_leg3 * t590;
-        let t749 = s_distal_leg4 * (t536 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t605 - t686);
-        let t753 = minus_gdistal_wy_leg4 * t608;
-        let t758 = 6.936717523440031 * t197;
-        let t764 = 9.81 * (t220 * c_proximal_leg1 - 0.5 * (t170 * s_proximal_leg1));
-        let t774 = 6.936717523440031 * t254;
-        let t786 = 9.81
-            * (0.5 * (t236 * minus_s_proximal_leg2) - t284 * c_proximal_leg2);
-        let t790 = 6.936717523440031 * t329;
-        let t796 = 9.81 * (t352 * c_proximal_leg3 - 0.5 * (t303 * s_proximal_leg3));
-        let t810 = 6.936717523440031 * t386;
-        let t817 = 9.81
-            * (0.5 * (t369 * minus_s_proximal_leg4) - t416 * c_proximal_leg4);
+            - minus_gdistal_wy_leg4 * acceleration[2] - t342 * minus_rate_wrist_leg4;
+        let t613 = minus_s_distal_leg4 * (t601 - t519)
+            + c_distal_leg4 * (rate_dot_distal_leg4 + t453);
+        let t617 = minus_gdistal_wy_leg4 * t350;
+        let t625 = minus_s_distal_leg1 * (t421 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t474 - t546);
+        let t627 = minus_gdistal_wx_leg1 * t466;
+        let t638 = minus_s_distal_leg2 * (t433 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t492 - t567);
+        let t642 = gdistal_wy_leg2 * t484;
+        let t651 = s_distal_leg3 * (t441 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t502 - t580);
+        let t653 = gdistal_wx_leg3 * t506;
+        let t664 = minus_s_distal_leg4 * (rate_dot_distal_leg4 - t453)
+            + c_distal_leg4 * (t520 - t601);
+        let t668 = minus_gdistal_wy_leg4 * t524;
+        let t673 = 6.936717523440031 * t173;
+        let t675 = t156 * (-6.936717523440031);
+        let t676 = minus_gdistal_wx_leg1 * t675;
+        let t683 = 6.936717523440031 * t217;
+        let t689 = 0.7071067811865475 * t207 * t361;
+        let t693 = 6.936717523440031 * t274;
+        let t695 = t263 * 6.936717523440031;
+        let t696 = gdistal_wx_leg3 * t695;
+        let t704 = 6.936717523440031 * t316;
+        let t708 = t369 * (0.7071067811865475 * t319);
         Ok([
             [
-                t5 * t17 + t38 - t48, t19 * t61 - t5 * t68 + t25 * t73,
-                t5 * t91 + t19 * t94 - t25 * t97, t19 * t67 - t111 + t48,
-                t5 * t122 - t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
-                t25 * t149 - t19 * t151, t5 * t151 - t25 * t158, t19 * t158 - t5 * t149,
-                minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
+                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
+                t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
+                t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90, 9.81 * t10, 9.81 * t41,
+                9.81 * t29, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wx_leg1 * t434, -(minus_gproximal_wx_leg2 * t438),
-                minus_gproximal_wx_leg3 * t442, -(minus_gproximal_wx_leg4 * t446),
-                minus_gproximal_wx_leg1 * t450, minus_gproximal_wx_leg2 * t454,
-                minus_gproximal_wx_leg3 * t458, minus_gproximal_wx_leg4 * t462,
+                -(minus_minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4),
+                minus_gproximal_wx_leg1 * t357, -(minus_gproximal_wx_leg2 * t361),
+                minus_gproximal_wx_leg3 * t365, minus_minus_gproximal_wx_leg4 * t369,
+                minus_gproximal_wx_leg1 * t373, minus_gproximal_wx_leg2 * t377,
+                minus_gproximal_wx_leg3 * t381, -(minus_minus_gproximal_wx_leg4 * t385),
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
-                minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
+                -(minus_minus_gproximal_wx_leg4 * minus_rate_proximal_leg4),
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
@@ -5615,51 +5433,48 @@ impl Spherical4Rrr {
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
-                ::overact::math::signed(
-                    minus_gproximal_wx_leg4,
+                -::overact::math::signed(
+                    minus_minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg1,
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
-                -minus_gproximal_wx_leg4,
-                minus_gproximal_wx_leg1 * t498 + t501,
-                minus_gproximal_wx_leg2 * t512 + c_proximal_leg2 * t514,
-                t523 - minus_gproximal_wx_leg3 * t528,
-                c_proximal_leg4 * t536 - minus_gproximal_wx_leg4 * t542,
-                -(minus_gproximal_wx_leg1 * t556 + t561),
-                -(minus_gproximal_wx_leg2 * t574 + c_proximal_leg2 * t578),
-                t589 - minus_gproximal_wx_leg3 * t596,
-                c_proximal_leg4 * t606 - minus_gproximal_wx_leg4 * t614,
-                minus_gproximal_wx_leg1 * t634 - t636,
-                minus_gproximal_wx_leg2 * t655 - c_proximal_leg2 * t295,
-                t664 - minus_gproximal_wx_leg3 * t677,
-                c_proximal_leg4 * t427 - minus_gproximal_wx_leg4 * t698,
-                -(minus_gproximal_wx_leg1 * t710 + t712),
-                -(minus_gproximal_wx_leg2 * t723 + c_proximal_leg2 * t568),
-                -(minus_gproximal_wx_leg3 * t736 + t738),
-                -(minus_gproximal_wx_leg4 * t749 + c_proximal_leg4 * t608),
-                -(minus_gproximal_wx_leg1 * t758 + t764),
-                minus_gproximal_wx_leg2 * t774
-                    - c_proximal_leg2
-                        * (c_distal_leg2 * t454 - 3.4683587617200153 * t238),
-                minus_gproximal_wx_leg3 * t790 + t796,
-                c_proximal_leg4 * (c_distal_leg4 * t462 + 3.4683587617200153 * t370)
-                    - minus_gproximal_wx_leg4 * t810,
+                minus_minus_gproximal_wx_leg4,
+                minus_gproximal_wx_leg1 * t419 + t422,
+                minus_gproximal_wx_leg2 * t431 + c_proximal_leg2 * t433,
+                t442 + minus_gproximal_wx_leg3 * t445,
+                -(c_proximal_leg4 * t453 + minus_minus_gproximal_wx_leg4 * t457),
+                -(minus_gproximal_wx_leg1 * t471 + t476),
+                -(minus_gproximal_wx_leg2 * t489 + c_proximal_leg2 * t493),
+                t504 - minus_gproximal_wx_leg3 * t511,
+                c_proximal_leg4 * t521 + minus_minus_gproximal_wx_leg4 * t529,
+                minus_gproximal_wx_leg1 * t549 - t551,
+                minus_gproximal_wx_leg2 * t570 - c_proximal_leg2 * t250,
+                t579 - minus_gproximal_wx_leg3 * t592,
+                c_proximal_leg4 * t350 - minus_minus_gproximal_wx_leg4 * t613,
+                -(minus_gproximal_wx_leg1 * t625 + t627),
+                -(minus_gproximal_wx_leg2 * t638 + c_proximal_leg2 * t484),
+                -(minus_gproximal_wx_leg3 * t651 + t653),
+                -(minus_minus_gproximal_wx_leg4 * t664 - c_proximal_leg4 * t524),
+                -(minus_gproximal_wx_leg1 * t673 + t676),
+                minus_gproximal_wx_leg2 * t683 + t207 * t377,
+                minus_gproximal_wx_leg3 * t693 + t696,
+                t319 * t385 - minus_minus_gproximal_wx_leg4 * t704,
             ],
             [
-                t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + t29 * t73,
-                t10 * t91 + t41 * t94 - t29 * t97, t41 * t67 - t115 + t53,
-                t10 * t122 - t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
-                t29 * t149 - t41 * t151, t10 * t151 - t29 * t158, t41 * t158 - t10 * t149,
+                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
+                t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
+                t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90, -(9.81 * t5),
+                -(9.81 * t19), -(9.81 * t25),
                 minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
                 minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wy_leg1 * t434, -(minus_gproximal_wy_leg2 * t438),
-                minus_gproximal_wy_leg3 * t442, -(minus_gproximal_wy_leg4 * t446),
-                minus_gproximal_wy_leg1 * t450, minus_gproximal_wy_leg2 * t454,
-                minus_gproximal_wy_leg3 * t458, minus_gproximal_wy_leg4 * t462,
+                minus_gproximal_wy_leg1 * t357, -(minus_gproximal_wy_leg2 * t361),
+                minus_gproximal_wy_leg3 * t365, -(minus_gproximal_wy_leg4 * t369),
+                minus_gproximal_wy_leg1 * t373, minus_gproximal_wy_leg2 * t377,
+                minus_gproximal_wy_leg3 * t381, minus_gproximal_wy_leg4 * t385,
                 minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
@@ -5684,79 +5499,77 @@ impl Spherical4Rrr {
                 -minus_gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                minus_gproximal_wy_leg1 * t498 - c_proximal_leg1 * t500,
-                minus_gproximal_wy_leg2 * t512 - t518,
-                -(minus_gproximal_wy_leg3 * t528 + c_proximal_leg3 * t522),
-                -(minus_gproximal_wy_leg4 * t542 + t546),
-                c_proximal_leg1 * t560 - minus_gproximal_wy_leg1 * t556,
-                t581 - minus_gproximal_wy_leg2 * t574,
-                -(minus_gproximal_wy_leg3 * t596 + c_proximal_leg3 * t588),
-                -(minus_gproximal_wy_leg4 * t614 + t618),
-                minus_gproximal_wy_leg1 * t634 + c_proximal_leg1 * t229,
-                minus_gproximal_wy_leg2 * t655 + t660,
-                -(minus_gproximal_wy_leg3 * t677 + c_proximal_leg3 * t361),
-                -(minus_gproximal_wy_leg4 * t698 + t702),
-                c_proximal_leg1 * t550 - minus_gproximal_wy_leg1 * t710,
-                t727 - minus_gproximal_wy_leg2 * t723,
-                c_proximal_leg3 * t590 - minus_gproximal_wy_leg3 * t736,
-                t753 - minus_gproximal_wy_leg4 * t749,
-                c_proximal_leg1 * (c_distal_leg1 * t450 - 3.4683587617200153 * t172)
-                    - minus_gproximal_wy_leg1 * t758,
-                minus_gproximal_wy_leg2 * t774 - t786,
-                minus_gproximal_wy_leg3 * t790
-                    - c_proximal_leg3
-                        * (c_distal_leg3 * t458 + 3.4683587617200153 * t304),
-                t817 - minus_gproximal_wy_leg4 * t810,
+                minus_gproximal_wy_leg1 * t419 - c_proximal_leg1 * t421,
+                minus_gproximal_wy_leg2 * t431 - t437,
+                -(c_proximal_leg3 * t441 - minus_gproximal_wy_leg3 * t445),
+                minus_gproximal_wy_leg4 * t457 + t461,
+                c_proximal_leg1 * t475 - minus_gproximal_wy_leg1 * t471,
+                t496 - minus_gproximal_wy_leg2 * t489,
+                -(minus_gproximal_wy_leg3 * t511 + c_proximal_leg3 * t503),
+                -(minus_gproximal_wy_leg4 * t529 + t533),
+                minus_gproximal_wy_leg1 * t549 + c_proximal_leg1 * t199,
+                minus_gproximal_wy_leg2 * t570 + t575,
+                -(minus_gproximal_wy_leg3 * t592 + c_proximal_leg3 * t300),
+                -(t617 - minus_gproximal_wy_leg4 * t613),
+                c_proximal_leg1 * t466 - minus_gproximal_wy_leg1 * t625,
+                t642 - minus_gproximal_wy_leg2 * t638,
+                c_proximal_leg3 * t506 - minus_gproximal_wy_leg3 * t651,
+                minus_gproximal_wy_leg4 * t664 - t668,
+                c_proximal_leg1 * t675 - minus_gproximal_wy_leg1 * t673,
+                minus_gproximal_wy_leg2 * t683 - t689,
+                minus_gproximal_wy_leg3 * t693 - c_proximal_leg3 * t695,
+                minus_gproximal_wy_leg4 * t704 - t708,
             ],
             [
-                t15 * t17 + t56 - t58, t44 * t61 - t15 * t68 + t34 * t73,
-                t15 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
-                t15 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
+                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
+                t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
+                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
                 -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wz_leg1 * t434),
-                gproximal_wz_leg2 * t438, minus_gproximal_wz_leg3 * t442,
-                -(minus_gproximal_wz_leg4 * t446), -(gproximal_wz_leg1 * t450),
-                -(gproximal_wz_leg2 * t454), minus_gproximal_wz_leg3 * t458,
-                minus_gproximal_wz_leg4 * t462, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                -(minus_minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4),
+                -(gproximal_wz_leg1 * t357), gproximal_wz_leg2 * t361,
+                minus_gproximal_wz_leg3 * t365, minus_minus_gproximal_wz_leg4 * t369,
+                -(gproximal_wz_leg1 * t373), -(gproximal_wz_leg2 * t377),
+                minus_gproximal_wz_leg3 * t381, -(minus_minus_gproximal_wz_leg4 * t385),
+                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
-                minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
+                -(minus_minus_gproximal_wz_leg4 * minus_rate_proximal_leg4),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
-                ::overact::math::signed(
-                    minus_gproximal_wz_leg4,
+                -::overact::math::signed(
+                    minus_minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 gproximal_wz_leg1,
                 gproximal_wz_leg2,
                 -minus_gproximal_wz_leg3,
-                -minus_gproximal_wz_leg4,
-                -(gproximal_wz_leg1 * t498 + t501),
-                t518 - gproximal_wz_leg2 * t512,
-                t523 - minus_gproximal_wz_leg3 * t528,
-                -(minus_gproximal_wz_leg4 * t542 + t546),
-                gproximal_wz_leg1 * t556 + t561,
-                gproximal_wz_leg2 * t574 - t581,
-                t589 - minus_gproximal_wz_leg3 * t596,
-                -(minus_gproximal_wz_leg4 * t614 + t618),
-                t636 - gproximal_wz_leg1 * t634,
-                -(gproximal_wz_leg2 * t655 + t660),
-                t664 - minus_gproximal_wz_leg3 * t677,
-                -(minus_gproximal_wz_leg4 * t698 + t702),
-                gproximal_wz_leg1 * t710 + t712,
-                gproximal_wz_leg2 * t723 - t727,
-                -(minus_gproximal_wz_leg3 * t736 + t738),
-                t753 - minus_gproximal_wz_leg4 * t749,
-                gproximal_wz_leg1 * t758 + t764,
-                t786 - gproximal_wz_leg2 * t774,
-                minus_gproximal_wz_leg3 * t790 + t796,
-                t817 - minus_gproximal_wz_leg4 * t810,
+                minus_minus_gproximal_wz_leg4,
+                -(gproximal_wz_leg1 * t419 + t422),
+                t437 - gproximal_wz_leg2 * t431,
+                t442 + minus_gproximal_wz_leg3 * t445,
+                -(minus_minus_gproximal_wz_leg4 * t457 - t461),
+                gproximal_wz_leg1 * t471 + t476,
+                gproximal_wz_leg2 * t489 - t496,
+                t504 - minus_gproximal_wz_leg3 * t511,
+                -(t533 - minus_minus_gproximal_wz_leg4 * t529),
+                t551 - gproximal_wz_leg1 * t549,
+                -(gproximal_wz_leg2 * t570 + t575),
+                t579 - minus_gproximal_wz_leg3 * t592,
+                -(minus_minus_gproximal_wz_leg4 * t613 + t617),
+                gproximal_wz_leg1 * t625 + t627,
+                gproximal_wz_leg2 * t638 - t642,
+                -(minus_gproximal_wz_leg3 * t651 + t653),
+                -(t668 + minus_minus_gproximal_wz_leg4 * t664),
+                gproximal_wz_leg1 * t673 + t676,
+                t689 - gproximal_wz_leg2 * t683,
+                minus_gproximal_wz_leg3 * t693 + t696,
+                -(t708 + minus_minus_gproximal_wz_leg4 * t704),
             ],
         ])
     }
@@ -5771,7 +5584,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 714 operations (258 additions, 452 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 586 intermediates.
+    /// 687 operations (248 additions, 435 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 559 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5827,252 +5640,248 @@ impl Spherical4Rrr {
         let t53 = t29 * t47;
         let t56 = t44 * t37;
         let t58 = t34 * t47;
-        let t60 = t46 * t36;
-        let t61 = t60 + t17;
-        let t67 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
-        let t68 = t37 - t67;
+        let t64 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
+        let t65 = t64 - t37;
+        let t67 = t46 * t36;
+        let t68 = t17 + t67;
         let t71 = t24 * t24;
         let t72 = t46 * t46;
         let t73 = t71 - t72;
         let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
-        let t91 = t47 + t90;
+        let t91 = t90 + t47;
         let t93 = t36 * t36;
         let t94 = t93 - t71;
-        let t97 = t60 - t17;
-        let t111 = t5 * t60;
-        let t115 = t10 * t60;
-        let t119 = t15 * t60;
+        let t97 = t17 - t67;
+        let t111 = t5 * t67;
+        let t115 = t10 * t67;
+        let t119 = t15 * t67;
         let t122 = t72 - t93;
-        let t124 = t47 - t90;
-        let t127 = t37 + t67;
-        let t149 = 9.81 * t44;
-        let t151 = 9.81 * t34;
-        let t158 = 9.81 * t15;
-        let t174 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let t175 = c_distal_leg1 * t174;
-        let t176 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t177 = t175 + t176;
-        let t178 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = t177 * t178;
-        let t180 = t175 - t176;
-        let t183 = minus_s_proximal_leg1 * c_distal_leg1;
+        let t124 = t90 - t47;
+        let t127 = t64 + t37;
+        let t159 = 0.7071067811865476 * minus_c_proximal_leg1;
+        let t160 = c_distal_leg1 * t159;
+        let t161 = 0.7071067811865476 * minus_s_distal_leg1;
+        let t162 = t160 + t161;
+        let t163 = 1.0 / minus_s_distal_leg1;
+        let gproximal_wx_leg1 = t162 * t163;
+        let t165 = t160 - t161;
+        let t168 = minus_s_proximal_leg1 * c_distal_leg1;
         let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
         let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t193 = c_distal_leg1 * t178;
-        let t198 = t180 * twist[2] - (t177 * twist[0] + t183 * twist[1]);
-        let t199 = t193 * t198;
-        let t200 = rate_distal_leg1 * t199;
-        let t201 = 0.7071067811865476 * c_distal_leg1;
-        let t202 = minus_s_distal_leg1 * t174;
-        let t208 = t202 + t201;
-        let minus_rate_wrist_leg1 = t199 + (t201 - t202) * twist[0]
-            - minus_s_proximal_leg1 * minus_s_distal_leg1 * twist[1] + t208 * twist[2];
-        let t214 = t180 * acceleration[2]
-            - (t177 * acceleration[0] + t183 * acceleration[1]) + t200
+        let t178 = c_distal_leg1 * t163;
+        let t183 = t165 * twist[2] - (t162 * twist[0] + t168 * twist[1]);
+        let t184 = t178 * t183;
+        let t185 = rate_distal_leg1 * t184;
+        let t186 = 0.7071067811865476 * c_distal_leg1;
+        let t187 = minus_s_distal_leg1 * t159;
+        let t193 = t187 + t186;
+        let minus_rate_wrist_leg1 = t184 + (t186 - t187) * twist[0]
+            - minus_s_proximal_leg1 * minus_s_distal_leg1 * twist[1] + t193 * twist[2];
+        let t199 = t165 * acceleration[2]
+            - (t162 * acceleration[0] + t168 * acceleration[1]) + t185
             + rate_distal_leg1 * minus_rate_wrist_leg1;
-        let minus_rate_dot_proximal_leg1 = t178 * t214;
-        let gproximal_wy_leg1 = t183 * t178;
-        let minus_gproximal_wz_leg1 = t180 * t178;
-        let t225 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t226 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t225 * t226;
-        let t229 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t230 = c_distal_leg2 * t229;
-        let t231 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t232 = t230 + t231;
-        let t235 = t230 - t231;
+        let minus_rate_dot_proximal_leg1 = t163 * t199;
+        let gproximal_wy_leg1 = t168 * t163;
+        let minus_gproximal_wz_leg1 = t165 * t163;
+        let t210 = minus_s_proximal_leg2 * c_distal_leg2;
+        let t211 = 1.0 / minus_s_distal_leg2;
+        let minus_gproximal_wx_leg2 = t210 * t211;
+        let t214 = 0.7071067811865476 * minus_c_proximal_leg2;
+        let t215 = c_distal_leg2 * t214;
+        let t216 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t217 = t215 + t216;
+        let t220 = t215 - t216;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t244 = c_distal_leg2 * t226;
-        let t249 = t225 * twist[0] - t232 * twist[1] + t235 * twist[2];
-        let t250 = t244 * t249;
-        let t251 = rate_distal_leg2 * t250;
-        let t254 = 0.7071067811865476 * c_distal_leg2;
-        let t255 = minus_s_distal_leg2 * t229;
-        let t259 = t255 + t254;
-        let minus_rate_wrist_leg2 = t250
+        let t229 = c_distal_leg2 * t211;
+        let t234 = t210 * twist[0] - t217 * twist[1] + t220 * twist[2];
+        let t235 = t229 * t234;
+        let t236 = rate_distal_leg2 * t235;
+        let t239 = 0.7071067811865476 * c_distal_leg2;
+        let t240 = minus_s_distal_leg2 * t214;
+        let t244 = t240 + t239;
+        let minus_rate_wrist_leg2 = t235
             + minus_s_proximal_leg2 * minus_s_distal_leg2 * twist[0]
-            + (t254 - t255) * twist[1] + t259 * twist[2];
-        let t265 = t225 * acceleration[0] - t232 * acceleration[1]
-            + t235 * acceleration[2] + t251 + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let minus_rate_dot_proximal_leg2 = t226 * t265;
-        let gproximal_wy_leg2 = t232 * t226;
-        let minus_gproximal_wz_leg2 = t235 * t226;
-        let t276 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t277 = c_distal_leg3 * t276;
-        let t278 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t279 = t277 + t278;
-        let t280 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t279 * t280;
-        let t283 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t286 = t277 - t278;
+            + (t239 - t240) * twist[1] + t244 * twist[2];
+        let t250 = t210 * acceleration[0] - t217 * acceleration[1]
+            + t220 * acceleration[2] + t236 + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let minus_rate_dot_proximal_leg2 = t211 * t250;
+        let gproximal_wy_leg2 = t217 * t211;
+        let minus_gproximal_wz_leg2 = t220 * t211;
+        let t261 = 0.7071067811865476 * minus_c_proximal_leg3;
+        let t262 = c_distal_leg3 * t261;
+        let t263 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t264 = t262 + t263;
+        let t265 = 1.0 / minus_s_distal_leg3;
+        let minus_gproximal_wx_leg3 = t264 * t265;
+        let t268 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t271 = t262 - t263;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t295 = c_distal_leg3 * t280;
-        let t300 = t279 * twist[0] + t283 * twist[1] + t286 * twist[2];
-        let t301 = t295 * t300;
-        let t302 = rate_distal_leg3 * t301;
-        let t303 = minus_s_distal_leg3 * t276;
-        let t304 = 0.7071067811865476 * c_distal_leg3;
-        let t310 = t303 + t304;
-        let minus_rate_wrist_leg3 = t301 + (t303 - t304) * twist[0]
-            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t310 * twist[2];
-        let t316 = t279 * acceleration[0] + t283 * acceleration[1]
-            + t286 * acceleration[2] + t302 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t280 * t316;
-        let minus_gproximal_wy_leg3 = t283 * t280;
-        let minus_gproximal_wz_leg3 = t286 * t280;
-        let t327 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t328 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t327 * t328;
-        let t330 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t331 = c_distal_leg4 * t330;
-        let t332 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t333 = t331 + t332;
-        let t337 = t331 - t332;
+        let t280 = c_distal_leg3 * t265;
+        let t285 = t264 * twist[0] + t268 * twist[1] + t271 * twist[2];
+        let t286 = t280 * t285;
+        let t287 = rate_distal_leg3 * t286;
+        let t288 = minus_s_distal_leg3 * t261;
+        let t289 = 0.7071067811865476 * c_distal_leg3;
+        let t295 = t288 + t289;
+        let minus_rate_wrist_leg3 = t286 + (t288 - t289) * twist[0]
+            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t295 * twist[2];
+        let t301 = t264 * acceleration[0] + t268 * acceleration[1]
+            + t271 * acceleration[2] + t287 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t265 * t301;
+        let minus_gproximal_wy_leg3 = t268 * t265;
+        let minus_gproximal_wz_leg3 = t271 * t265;
+        let t312 = minus_s_proximal_leg4 * c_distal_leg4;
+        let t313 = 1.0 / minus_s_distal_leg4;
+        let gproximal_wx_leg4 = t312 * t313;
+        let t315 = 0.7071067811865476 * minus_c_proximal_leg4;
+        let t316 = c_distal_leg4 * t315;
+        let t317 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t318 = t316 + t317;
+        let t322 = t316 - t317;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t346 = c_distal_leg4 * t328;
-        let t351 = t333 * twist[1] - t327 * twist[0] + t337 * twist[2];
-        let t352 = t346 * t351;
-        let t353 = rate_distal_leg4 * t352;
-        let t354 = minus_s_distal_leg4 * t330;
-        let t355 = 0.7071067811865476 * c_distal_leg4;
-        let t361 = t354 + t355;
-        let minus_rate_wrist_leg4 = t352 + (t354 - t355) * twist[1]
-            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t361 * twist[2];
-        let t367 = t333 * acceleration[1] - t327 * acceleration[0]
-            + t337 * acceleration[2] + t353 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t328 * t367;
-        let minus_gproximal_wy_leg4 = t333 * t328;
-        let minus_gproximal_wz_leg4 = t337 * t328;
-        let t374 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t378 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t382 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t386 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t390 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t394 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t398 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t402 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t178 * t198;
-        let minus_rate_proximal_leg2 = t226 * t249;
-        let minus_rate_proximal_leg3 = t280 * t300;
-        let minus_rate_proximal_leg4 = t328 * t351;
-        let t434 = t198 * rate_distal_leg1;
-        let t436 = t214 - t200;
-        let t438 = c_distal_leg1 * t434 - minus_s_distal_leg1 * t436;
-        let t440 = t198 * t199;
-        let t441 = minus_gdistal_wx_leg1 * t440;
-        let t448 = t249 * rate_distal_leg2;
-        let t450 = t265 - t251;
-        let t452 = c_distal_leg2 * t448 - minus_s_distal_leg2 * t450;
-        let t454 = t249 * t250;
-        let t458 = minus_gdistal_wy_leg2 * t454;
-        let t462 = t300 * t301;
-        let t463 = gdistal_wx_leg3 * t462;
-        let t464 = t300 * rate_distal_leg3;
-        let t466 = t316 - t302;
-        let t468 = c_distal_leg3 * t464 - minus_s_distal_leg3 * t466;
-        let t476 = t351 * rate_distal_leg4;
-        let t478 = t367 - t353;
-        let t480 = c_distal_leg4 * t476 - minus_s_distal_leg4 * t478;
-        let t482 = t351 * t352;
-        let t485 = gdistal_wy_leg4 * t482;
-        let t490 = t193 * t214;
-        let t496 = minus_s_distal_leg1 * (t434 + t490 + t434)
-            + c_distal_leg1 * (t436 - t200);
-        let t498 = t198 * t198;
-        let t499 = t199 * t199;
-        let t500 = t498 - t499;
-        let t501 = minus_gdistal_wx_leg1 * t500;
-        let t508 = t244 * t265;
-        let t514 = minus_s_distal_leg2 * (t448 + t508 + t448)
-            + c_distal_leg2 * (t450 - t251);
-        let t516 = t249 * t249;
-        let t517 = t250 * t250;
-        let t518 = t516 - t517;
-        let t522 = minus_gdistal_wy_leg2 * t518;
-        let t526 = t300 * t300;
-        let t527 = t301 * t301;
-        let t528 = t526 - t527;
-        let t529 = gdistal_wx_leg3 * t528;
-        let t530 = t295 * t316;
-        let t536 = minus_s_distal_leg3 * (t464 + t530 + t464)
-            + c_distal_leg3 * (t466 - t302);
-        let t544 = t346 * t367;
-        let t550 = minus_s_distal_leg4 * (t476 + t544 + t476)
-            + c_distal_leg4 * (t478 - t353);
-        let t552 = t351 * t351;
-        let t553 = t352 * t352;
-        let t554 = t552 - t553;
-        let t557 = gdistal_wy_leg4 * t554;
-        let t562 = rate_distal_leg1 * rate_distal_leg1;
+        let t331 = c_distal_leg4 * t313;
+        let t336 = t318 * twist[1] - t312 * twist[0] + t322 * twist[2];
+        let t337 = t331 * t336;
+        let t338 = rate_distal_leg4 * t337;
+        let t339 = minus_s_distal_leg4 * t315;
+        let t340 = 0.7071067811865476 * c_distal_leg4;
+        let t346 = t339 + t340;
+        let minus_rate_wrist_leg4 = t337 + (t339 - t340) * twist[1]
+            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t346 * twist[2];
+        let t352 = t318 * acceleration[1] - t312 * acceleration[0]
+            + t322 * acceleration[2] + t338 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t313 * t352;
+        let minus_gproximal_wy_leg4 = t318 * t313;
+        let minus_gproximal_wz_leg4 = t322 * t313;
+        let t359 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t363 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t367 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t371 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t375 = 6.9367175234400325 * minus_c_proximal_leg1;
+        let t379 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let t383 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let t387 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t163 * t183;
+        let minus_rate_proximal_leg2 = t211 * t234;
+        let minus_rate_proximal_leg3 = t265 * t285;
+        let minus_rate_proximal_leg4 = t313 * t336;
+        let t420 = t199 - t185 - t185;
+        let t421 = minus_s_distal_leg1 * t420;
+        let t423 = t183 * t184;
+        let t424 = minus_gdistal_wx_leg1 * t423;
+        let t432 = t250 - t236 - t236;
+        let t433 = minus_s_distal_leg2 * t432;
+        let t435 = t234 * t235;
+        let t439 = minus_gdistal_wy_leg2 * t435;
+        let t443 = t285 * t286;
+        let t444 = gdistal_wx_leg3 * t443;
+        let t446 = t301 - t287 - t287;
+        let t447 = minus_s_distal_leg3 * t446;
+        let t456 = t352 - t338 - t338;
+        let t457 = minus_s_distal_leg4 * t456;
+        let t459 = t336 * t337;
+        let t462 = gdistal_wy_leg4 * t459;
+        let t467 = t183 * rate_distal_leg1;
+        let t468 = t178 * t199;
+        let t473 = minus_s_distal_leg1 * (t467 + t468 + t467) + c_distal_leg1 * t420;
+        let t475 = t183 * t183;
+        let t476 = t184 * t184;
+        let t477 = t475 - t476;
+        let t478 = minus_gdistal_wx_leg1 * t477;
+        let t485 = t234 * rate_distal_leg2;
+        let t486 = t229 * t250;
+        let t491 = minus_s_distal_leg2 * (t485 + t486 + t485) + c_distal_leg2 * t432;
+        let t493 = t234 * t234;
+        let t494 = t235 * t235;
+        let t495 = t493 - t494;
+        let t499 = minus_gdistal_wy_leg2 * t495;
+        let t503 = t285 * t285;
+        let t504 = t286 * t286;
+        let t505 = t503 - t504;
+        let t506 = gdistal_wx_leg3 * t505;
+        let t507 = t285 * rate_distal_leg3;
+        let t508 = t280 * t301;
+        let t513 = minus_s_distal_leg3 * (t507 + t508 + t507) + c_distal_leg3 * t446;
+        let t521 = t336 * rate_distal_leg4;
+        let t522 = t331 * t352;
+        let t527 = minus_s_distal_leg4 * (t521 + t522 + t521) + c_distal_leg4 * t456;
+        let t529 = t336 * t336;
+        let t530 = t337 * t337;
+        let t531 = t529 - t530;
+        let t534 = gdistal_wy_leg4 * t531;
+        let t539 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] - t198 * minus_rate_wrist_leg1;
-        let t574 = c_distal_leg1 * (t562 - t498)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t440);
-        let t576 = minus_gdistal_wx_leg1 * t214;
-        let t583 = rate_distal_leg2 * rate_distal_leg2;
+            + minus_gdistal_wx_leg1 * acceleration[2] - t183 * minus_rate_wrist_leg1;
+        let t551 = c_distal_leg1 * (t539 - t475)
+            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t423);
+        let t553 = minus_gdistal_wx_leg1 * t199;
+        let t560 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t249 * minus_rate_wrist_leg2;
-        let t595 = c_distal_leg2 * (t583 - t516)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t454);
-        let t600 = minus_gdistal_wy_leg2 * t265;
-        let t604 = gdistal_wx_leg3 * t316;
-        let t605 = rate_distal_leg3 * rate_distal_leg3;
+            - t234 * minus_rate_wrist_leg2;
+        let t572 = c_distal_leg2 * (t560 - t493)
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t435);
+        let t577 = minus_gdistal_wy_leg2 * t250;
+        let t581 = gdistal_wx_leg3 * t301;
+        let t582 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t300 * minus_rate_wrist_leg3;
-        let t617 = c_distal_leg3 * (t605 - t526)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t462);
-        let t625 = rate_distal_leg4 * rate_distal_leg4;
+            - t285 * minus_rate_wrist_leg3;
+        let t594 = c_distal_leg3 * (t582 - t503)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t443);
+        let t602 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t351 * minus_rate_wrist_leg4;
-        let t637 = c_distal_leg4 * (t625 - t552)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t482);
-        let t641 = gdistal_wy_leg4 * t367;
-        let t650 = c_distal_leg1 * (t440 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t499 - t562);
-        let t652 = minus_gdistal_wx_leg1 * t490;
-        let t664 = c_distal_leg2 * (t454 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t517 - t583);
-        let t668 = minus_gdistal_wy_leg2 * t508;
-        let t676 = c_distal_leg3 * (t462 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t527 - t605);
-        let t678 = gdistal_wx_leg3 * t530;
-        let t689 = c_distal_leg4 * (t482 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t553 - t625);
-        let t694 = gdistal_wy_leg4 * t544;
-        let t698 = c_distal_leg1 * t374;
-        let t701 = 6.9367175234400325 * (minus_s_proximal_leg1 * t208);
-        let t709 = c_distal_leg2 * t378;
-        let t716 = 6.9367175234400325 * (minus_s_proximal_leg2 * t259);
-        let t720 = c_distal_leg3 * t382;
-        let t723 = 6.9367175234400325 * (minus_s_proximal_leg3 * t310);
-        let t733 = c_distal_leg4 * t386;
-        let t738 = 6.9367175234400325 * (minus_s_proximal_leg4 * t361);
+            - t336 * minus_rate_wrist_leg4;
+        let t614 = c_distal_leg4 * (t602 - t529)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t459);
+        let t618 = gdistal_wy_leg4 * t352;
+        let t627 = c_distal_leg1 * (t423 + rate_dot_distal_leg1)
+            - minus_s_distal_leg1 * (t476 - t539);
+        let t629 = minus_gdistal_wx_leg1 * t468;
+        let t641 = c_distal_leg2 * (t435 + rate_dot_distal_leg2)
+            - minus_s_distal_leg2 * (t494 - t560);
+        let t645 = minus_gdistal_wy_leg2 * t486;
+        let t653 = c_distal_leg3 * (t443 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t504 - t582);
+        let t655 = gdistal_wx_leg3 * t508;
+        let t666 = c_distal_leg4 * (t459 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t530 - t602);
+        let t671 = gdistal_wy_leg4 * t522;
+        let t675 = c_distal_leg1 * t359;
+        let t677 = 9.81 * t193;
+        let t678 = minus_gdistal_wx_leg1 * t677;
+        let t685 = c_distal_leg2 * t363;
+        let t687 = 9.81 * t244;
+        let t691 = minus_gdistal_wy_leg2 * t687;
+        let t695 = c_distal_leg3 * t367;
+        let t697 = 9.81 * t295;
+        let t698 = gdistal_wx_leg3 * t697;
+        let t705 = 9.81 * t346;
+        let t707 = c_distal_leg4 * t371;
+        let t711 = gdistal_wy_leg4 * t705;
         Ok([
             [
-                t5 * t17 + t38 - t48, t19 * t61 - t5 * t68 + t25 * t73,
-                t5 * t91 + t19 * t94 - t25 * t97, t19 * t67 - t111 + t48,
-                t5 * t122 - t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
-                t25 * t149 - t19 * t151, t5 * t151 - t25 * t158, t19 * t158 - t5 * t149,
-                -(gproximal_wx_leg1 * minus_rate_dot_proximal_leg1),
+                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
+                t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
+                t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90, 9.81 * t10, 9.81 * t41,
+                9.81 * t29, -(gproximal_wx_leg1 * minus_rate_dot_proximal_leg1),
                 minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3,
-                -(gproximal_wx_leg4 * minus_rate_dot_proximal_leg4), -(gproximal_wx_leg1 * t374),
-                minus_gproximal_wx_leg2 * t378, minus_gproximal_wx_leg3 * t382,
-                -(gproximal_wx_leg4 * t386), -(gproximal_wx_leg1 * t390),
-                minus_gproximal_wx_leg2 * t394, minus_gproximal_wx_leg3 * t398,
-                -(gproximal_wx_leg4 * t402), -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
+                -(gproximal_wx_leg4 * minus_rate_dot_proximal_leg4), -(gproximal_wx_leg1 * t359),
+                minus_gproximal_wx_leg2 * t363, minus_gproximal_wx_leg3 * t367,
+                -(gproximal_wx_leg4 * t371), -(gproximal_wx_leg1 * t375),
+                minus_gproximal_wx_leg2 * t379, minus_gproximal_wx_leg3 * t383,
+                -(gproximal_wx_leg4 * t387), -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
@@ -6090,40 +5899,39 @@ impl Spherical4Rrr {
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
                 gproximal_wx_leg4,
-                gproximal_wx_leg1 * t438 - t441,
-                -(minus_gproximal_wx_leg2 * t452 + minus_c_proximal_leg2 * t454),
-                t463 - minus_gproximal_wx_leg3 * t468,
-                gproximal_wx_leg4 * t480 + minus_c_proximal_leg4 * t482,
-                gproximal_wx_leg1 * t496 - t501,
-                -(minus_gproximal_wx_leg2 * t514 + minus_c_proximal_leg2 * t518),
-                t529 - minus_gproximal_wx_leg3 * t536,
-                gproximal_wx_leg4 * t550 + minus_c_proximal_leg4 * t554,
-                gproximal_wx_leg1 * t574 - t576,
-                -(minus_gproximal_wx_leg2 * t595 + minus_c_proximal_leg2 * t265),
-                t604 - minus_gproximal_wx_leg3 * t617,
-                gproximal_wx_leg4 * t637 + minus_c_proximal_leg4 * t367,
-                gproximal_wx_leg1 * t650 + t652,
-                minus_c_proximal_leg2 * t508 - minus_gproximal_wx_leg2 * t664,
-                -(minus_gproximal_wx_leg3 * t676 + t678),
-                gproximal_wx_leg4 * t689 - minus_c_proximal_leg4 * t544,
-                -(gproximal_wx_leg1 * t698 + t701),
-                minus_gproximal_wx_leg2 * t709 - minus_c_proximal_leg2 * (9.81 * t259),
-                minus_gproximal_wx_leg3 * t720 + t723,
-                minus_c_proximal_leg4 * (9.81 * t361) - gproximal_wx_leg4 * t733,
+                -(gproximal_wx_leg1 * t421 + t424),
+                -(minus_c_proximal_leg2 * t435 - minus_gproximal_wx_leg2 * t433),
+                t444 + minus_gproximal_wx_leg3 * t447,
+                minus_c_proximal_leg4 * t459 - gproximal_wx_leg4 * t457,
+                gproximal_wx_leg1 * t473 - t478,
+                -(minus_gproximal_wx_leg2 * t491 + minus_c_proximal_leg2 * t495),
+                t506 - minus_gproximal_wx_leg3 * t513,
+                gproximal_wx_leg4 * t527 + minus_c_proximal_leg4 * t531,
+                gproximal_wx_leg1 * t551 - t553,
+                -(minus_gproximal_wx_leg2 * t572 + minus_c_proximal_leg2 * t250),
+                t581 - minus_gproximal_wx_leg3 * t594,
+                gproximal_wx_leg4 * t614 + minus_c_proximal_leg4 * t352,
+                gproximal_wx_leg1 * t627 + t629,
+                minus_c_proximal_leg2 * t486 - minus_gproximal_wx_leg2 * t641,
+                -(minus_gproximal_wx_leg3 * t653 + t655),
+                gproximal_wx_leg4 * t666 - minus_c_proximal_leg4 * t522,
+                -(gproximal_wx_leg1 * t675 + t678),
+                minus_gproximal_wx_leg2 * t685 - minus_c_proximal_leg2 * t687,
+                minus_gproximal_wx_leg3 * t695 + t698,
+                minus_c_proximal_leg4 * t705 - gproximal_wx_leg4 * t707,
             ],
             [
-                t10 * t17 + t51 - t53, t41 * t61 - t10 * t68 + t29 * t73,
-                t10 * t91 + t41 * t94 - t29 * t97, t41 * t67 - t115 + t53,
-                t10 * t122 - t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
-                t29 * t149 - t41 * t151, t10 * t151 - t29 * t158, t41 * t158 - t10 * t149,
-                -(gproximal_wy_leg1 * minus_rate_dot_proximal_leg1),
+                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
+                t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
+                t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90, -(9.81 * t5),
+                -(9.81 * t19), -(9.81 * t25), -(gproximal_wy_leg1 * minus_rate_dot_proximal_leg1),
                 -(gproximal_wy_leg2 * minus_rate_dot_proximal_leg2),
                 minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wy_leg1 * t374),
-                -(gproximal_wy_leg2 * t378), minus_gproximal_wy_leg3 * t382,
-                minus_gproximal_wy_leg4 * t386, -(gproximal_wy_leg1 * t390),
-                -(gproximal_wy_leg2 * t394), minus_gproximal_wy_leg3 * t398,
-                minus_gproximal_wy_leg4 * t402, -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
+                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wy_leg1 * t359),
+                -(gproximal_wy_leg2 * t363), minus_gproximal_wy_leg3 * t367,
+                minus_gproximal_wy_leg4 * t371, -(gproximal_wy_leg1 * t375),
+                -(gproximal_wy_leg2 * t379), minus_gproximal_wy_leg3 * t383,
+                minus_gproximal_wy_leg4 * t387, -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
                 -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
@@ -6141,39 +5949,39 @@ impl Spherical4Rrr {
                 gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                gproximal_wy_leg1 * t438 + minus_c_proximal_leg1 * t440,
-                gproximal_wy_leg2 * t452 - t458,
-                -(minus_gproximal_wy_leg3 * t468 + minus_c_proximal_leg3 * t462),
-                t485 - minus_gproximal_wy_leg4 * t480,
-                gproximal_wy_leg1 * t496 + minus_c_proximal_leg1 * t500,
-                gproximal_wy_leg2 * t514 - t522,
-                -(minus_gproximal_wy_leg3 * t536 + minus_c_proximal_leg3 * t528),
-                t557 - minus_gproximal_wy_leg4 * t550,
-                gproximal_wy_leg1 * t574 + minus_c_proximal_leg1 * t214,
-                gproximal_wy_leg2 * t595 - t600,
-                -(minus_gproximal_wy_leg3 * t617 + minus_c_proximal_leg3 * t316),
-                t641 - minus_gproximal_wy_leg4 * t637,
-                gproximal_wy_leg1 * t650 - minus_c_proximal_leg1 * t490,
-                gproximal_wy_leg2 * t664 + t668,
-                minus_c_proximal_leg3 * t530 - minus_gproximal_wy_leg3 * t676,
-                -(minus_gproximal_wy_leg4 * t689 + t694),
-                minus_c_proximal_leg1 * (9.81 * t208) - gproximal_wy_leg1 * t698,
-                -(gproximal_wy_leg2 * t709 + t716),
-                minus_gproximal_wy_leg3 * t720 - minus_c_proximal_leg3 * (9.81 * t310),
-                minus_gproximal_wy_leg4 * t733 + t738,
+                minus_c_proximal_leg1 * t423 - gproximal_wy_leg1 * t421,
+                -(gproximal_wy_leg2 * t433 + t439),
+                -(minus_c_proximal_leg3 * t443 - minus_gproximal_wy_leg3 * t447),
+                t462 + minus_gproximal_wy_leg4 * t457,
+                gproximal_wy_leg1 * t473 + minus_c_proximal_leg1 * t477,
+                gproximal_wy_leg2 * t491 - t499,
+                -(minus_gproximal_wy_leg3 * t513 + minus_c_proximal_leg3 * t505),
+                t534 - minus_gproximal_wy_leg4 * t527,
+                gproximal_wy_leg1 * t551 + minus_c_proximal_leg1 * t199,
+                gproximal_wy_leg2 * t572 - t577,
+                -(minus_gproximal_wy_leg3 * t594 + minus_c_proximal_leg3 * t301),
+                t618 - minus_gproximal_wy_leg4 * t614,
+                gproximal_wy_leg1 * t627 - minus_c_proximal_leg1 * t468,
+                gproximal_wy_leg2 * t641 + t645,
+                minus_c_proximal_leg3 * t508 - minus_gproximal_wy_leg3 * t653,
+                -(minus_gproximal_wy_leg4 * t666 + t671),
+                minus_c_proximal_leg1 * t677 - gproximal_wy_leg1 * t675,
+                -(gproximal_wy_leg2 * t685 + t691),
+                minus_gproximal_wy_leg3 * t695 - minus_c_proximal_leg3 * t697,
+                minus_gproximal_wy_leg4 * t707 + t711,
             ],
             [
-                t15 * t17 + t56 - t58, t44 * t61 - t15 * t68 + t34 * t73,
-                t15 * t91 + t44 * t94 - t34 * t97, t44 * t67 - t119 + t58,
-                t15 * t122 - t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
+                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
+                t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
+                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
                 minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
                 minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wz_leg1 * t374, minus_gproximal_wz_leg2 * t378,
-                minus_gproximal_wz_leg3 * t382, minus_gproximal_wz_leg4 * t386,
-                minus_gproximal_wz_leg1 * t390, minus_gproximal_wz_leg2 * t394,
-                minus_gproximal_wz_leg3 * t398, minus_gproximal_wz_leg4 * t402,
+                minus_gproximal_wz_leg1 * t359, minus_gproximal_wz_leg2 * t363,
+                minus_gproximal_wz_leg3 * t367, minus_gproximal_wz_leg4 * t371,
+                minus_gproximal_wz_leg1 * t375, minus_gproximal_wz_leg2 * t379,
+                minus_gproximal_wz_leg3 * t383, minus_gproximal_wz_leg4 * t387,
                 minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
@@ -6198,26 +6006,26 @@ impl Spherical4Rrr {
                 -minus_gproximal_wz_leg2,
                 -minus_gproximal_wz_leg3,
                 -minus_gproximal_wz_leg4,
-                t441 - minus_gproximal_wz_leg1 * t438,
-                t458 - minus_gproximal_wz_leg2 * t452,
-                t463 - minus_gproximal_wz_leg3 * t468,
-                t485 - minus_gproximal_wz_leg4 * t480,
-                t501 - minus_gproximal_wz_leg1 * t496,
-                t522 - minus_gproximal_wz_leg2 * t514,
-                t529 - minus_gproximal_wz_leg3 * t536,
-                t557 - minus_gproximal_wz_leg4 * t550,
-                t576 - minus_gproximal_wz_leg1 * t574,
-                t600 - minus_gproximal_wz_leg2 * t595,
-                t604 - minus_gproximal_wz_leg3 * t617,
-                t641 - minus_gproximal_wz_leg4 * t637,
-                -(minus_gproximal_wz_leg1 * t650 + t652),
-                -(minus_gproximal_wz_leg2 * t664 + t668),
-                -(minus_gproximal_wz_leg3 * t676 + t678),
-                -(minus_gproximal_wz_leg4 * t689 + t694),
-                minus_gproximal_wz_leg1 * t698 + t701,
-                minus_gproximal_wz_leg2 * t709 + t716,
-                minus_gproximal_wz_leg3 * t720 + t723,
-                minus_gproximal_wz_leg4 * t733 + t738,
+                t424 + minus_gproximal_wz_leg1 * t421,
+                t439 + minus_gproximal_wz_leg2 * t433,
+                t444 + minus_gproximal_wz_leg3 * t447,
+                t462 + minus_gproximal_wz_leg4 * t457,
+                t478 - minus_gproximal_wz_leg1 * t473,
+                t499 - minus_gproximal_wz_leg2 * t491,
+                t506 - minus_gproximal_wz_leg3 * t513,
+                t534 - minus_gproximal_wz_leg4 * t527,
+                t553 - minus_gproximal_wz_leg1 * t551,
+                t577 - minus_gproximal_wz_leg2 * t572,
+                t581 - minus_gproximal_wz_leg3 * t594,
+                t618 - minus_gproximal_wz_leg4 * t614,
+                -(minus_gproximal_wz_leg1 * t627 + t629),
+                -(minus_gproximal_wz_leg2 * t641 + t645),
+                -(minus_gproximal_wz_leg3 * t653 + t655),
+                -(minus_gproximal_wz_leg4 * t666 + t671),
+                minus_gproximal_wz_leg1 * t675 + t678,
+                minus_gproximal_wz_leg2 * t685 + t691,
+                minus_gproximal_wz_leg3 * t695 + t698,
+                minus_gproximal_wz_leg4 * t707 + t711,
             ],
         ])
     }
@@ -6232,7 +6040,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 942 operations (342 additions, 589 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 802 intermediates.
+    /// 829 operations (316 additions, 506 multiplications, 7 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 689 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6260,370 +6068,340 @@ impl Spherical4Rrr {
         let t16 = 1.0 - pose[1] * t6;
         let t17 = t16 - t1;
         let t18 = t14 - t17;
-        let t19 = t13 + t18;
-        let minus_s_distal_leg1 = 0.5 * t19;
-        let t23 = 1.0 - 0.25 * (t19 * t19);
-        ::overact::guard::reach(t23, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t23);
+        let minus_s_distal_leg1 = 0.5 * (t13 + t18);
+        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t29 = 1.0 / (0.5 * (t13 * c_distal_leg1 - t18 * c_distal_leg1));
-        let t30 = pose[3] * t0;
-        let t31 = pose[0] * t6;
-        let t32 = t30 - t31;
-        let t33 = t9 - t32;
-        let t34 = t13 - t18;
-        let s_proximal_leg1 = t29 * (0.35355339059327373 * (t33 * t34));
-        let t38 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t39 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wy_leg1 = t38 * t39;
-        let t42 = t16 - t4;
-        let t43 = t42 - t32;
-        let t44 = t30 + t31;
-        let t45 = t44 - t17;
-        let t46 = t43 + t45;
-        let minus_s_distal_leg2 = 0.5 * t46;
-        let t50 = 1.0 - 0.25 * (t46 * t46);
-        ::overact::guard::reach(t50, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t50);
+        let t24 = 1.0 / c_distal_leg1;
+        let t25 = pose[3] * t0;
+        let t26 = pose[0] * t6;
+        let t27 = t25 - t26;
+        let s_proximal_leg1 = t24 * (0.7071067811865475 * (t9 - t27));
+        let t31 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t31 * t24;
+        let t34 = t16 - t4;
+        let t35 = t34 - t27;
+        let t36 = t25 + t26;
+        let t37 = t36 - t17;
+        let minus_s_distal_leg2 = 0.5 * (t35 + t37);
+        let t41 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t41, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t41);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t56 = 1.0 / (0.5 * (t43 * c_distal_leg2 - t45 * c_distal_leg2));
-        let t57 = t43 - t45;
-        let c_proximal_leg2 = t56 * (0.25 * (t57 * t57));
-        let t61 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t63 = 0.7071067811865475 * (t61 - c_distal_leg2);
-        let t64 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wy_leg2 = t63 * t64;
-        let t68 = t14 + t17;
-        let t69 = t5 + t12;
-        let t70 = t68 - t69;
-        let s_distal_leg3 = 0.5 * t70;
-        let t74 = 1.0 - 0.25 * (t70 * t70);
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        let t43 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t43 * (t35 - minus_s_distal_leg2);
+        let t46 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t48 = 0.7071067811865475 * (t46 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t48 * t43;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t17);
+        let t55 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t55, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t55);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t80 = 1.0 / (0.5 * (t69 * c_distal_leg3 + t68 * c_distal_leg3));
-        let t81 = t9 + t32;
-        let t82 = t69 + t68;
-        let s_proximal_leg3 = t80 * (0.35355339059327373 * (t81 * t82));
-        let t86 = s_distal_leg3 * s_proximal_leg3;
-        let t87 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t86 * t87;
-        let t91 = t44 + t17;
-        let t92 = t42 + t32;
-        let t93 = t91 - t92;
-        let s_distal_leg4 = 0.5 * t93;
-        let t97 = 1.0 - 0.25 * (t93 * t93);
-        ::overact::guard::reach(t97, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t97);
+        let t57 = 1.0 / c_distal_leg3;
+        let s_proximal_leg3 = t57 * (0.7071067811865475 * (t9 + t27));
+        let t61 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t61 * t57;
+        let s_distal_leg4 = minus_s_distal_leg2 + t17 - t34;
+        let t68 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t68, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t68);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t103 = 1.0 / (0.5 * (t92 * c_distal_leg4 + t91 * c_distal_leg4));
-        let t104 = t92 + t91;
-        let c_proximal_leg4 = t103 * (0.25 * (t104 * t104));
-        let t108 = s_distal_leg4 * c_proximal_leg4;
-        let t110 = 0.7071067811865475 * (t108 + c_distal_leg4);
-        let t111 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wy_leg4 = t110 * t111;
-        let c_proximal_leg1 = t29 * (0.25 * (t34 * t34));
-        let t118 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t120 = 0.7071067811865475 * (t118 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t120 * t39;
-        let t123 = t7 - t8;
-        let t124 = t123 - t12;
-        let minus_s_proximal_leg2 = t56 * (0.35355339059327373 * (t124 * t57));
-        let t128 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t128 * t64;
-        let c_proximal_leg3 = t80 * (0.25 * (t82 * t82));
-        let t135 = s_distal_leg3 * c_proximal_leg3;
-        let t137 = 0.7071067811865475 * (t135 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t137 * t87;
-        let t141 = t123 + t12;
-        let minus_s_proximal_leg4 = t103 * (0.35355339059327373 * (t141 * t104));
-        let t145 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t145 * t111;
-        let t148 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let t70 = 1.0 / c_distal_leg4;
+        let t71 = t36 + t17;
+        let c_proximal_leg4 = t70 * (t71 - s_distal_leg4);
+        let t74 = s_distal_leg4 * c_proximal_leg4;
+        let t76 = 0.7071067811865475 * (t74 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t76 * t70;
+        let c_proximal_leg1 = t24 * (t13 - minus_s_distal_leg1);
+        let t82 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t84 = 0.7071067811865475 * (t82 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t84 * t24;
+        let t87 = t7 - t8;
+        let minus_s_proximal_leg2 = t43 * (0.7071067811865475 * (t87 - t12));
+        let t91 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t91 * t43;
+        let t95 = t14 + t17;
+        let c_proximal_leg3 = t57 * (t95 - s_distal_leg3);
+        let t98 = s_distal_leg3 * c_proximal_leg3;
+        let t100 = 0.7071067811865475 * (t98 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t100 * t57;
+        let minus_s_proximal_leg4 = t70 * (0.7071067811865475 * (t87 + t12));
+        let t107 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t107 * t70;
+        let t110 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t155 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t117 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
-        let t156 = 1.0 / t155;
-        let t157 = t148 * t156;
-        let t159 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
+        let t118 = 1.0 / t117;
+        let t119 = t110 * t118;
+        let t121 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t148 * t157;
-        ::overact::guard::platform(t159, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t159, 0.9999999999999998, "actuators")?;
-        let t160 = 1.0 / t159;
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t110 * t119;
+        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
+        let t122 = 1.0 / t121;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t168 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t130 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t178 = t168 * t157
+        let t140 = t130 * t119
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t181 = 0.7071067811865475 * (t135 - c_distal_leg3);
-        let minus_gproximal_wz_leg3 = t181 * t87;
-        let t185 = 0.7071067811865475 * (t118 + c_distal_leg1);
-        let gproximal_wz_leg1 = t185 * t39;
-        let t189 = 0.7071067811865475 * (t61 + c_distal_leg2);
-        let gproximal_wz_leg2 = t189 * t64;
-        let t195 = 0.7071067811865475 * (t108 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t195 * t111;
-        let t205 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t143 = 0.7071067811865475 * (t98 - c_distal_leg3);
+        let minus_gproximal_wz_leg3 = t143 * t57;
+        let t147 = 0.7071067811865475 * (t82 + c_distal_leg1);
+        let gproximal_wz_leg1 = t147 * t24;
+        let t151 = 0.7071067811865475 * (t46 + c_distal_leg2);
+        let gproximal_wz_leg2 = t151 * t43;
+        let t157 = 0.7071067811865475 * (t74 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t157 * t70;
+        let t167 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t206 = t205 * t156;
-        let t208 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t168 = t167 * t118;
+        let t170 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t148 * t206;
-        let t209 = t208 * t160;
-        let t220 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t110 * t168;
+        let t171 = t170 * t122;
+        let t182 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t205 * t206
-            - t208 * t209;
-        ::overact::guard::platform(t220, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t220, 1.9999999999999996, "actuators")?;
-        let t221 = 1.0 / t220;
-        let t232 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t167 * t168
+            - t170 * t171;
+        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
+        let t183 = 1.0 / t182;
+        let t194 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t168 * t206
-            - t209 * t178;
-        let t233 = t221 * t232;
-        let t235 = t160 * t178 - t209 * t233;
-        let t239 = t168 * t156 + t157 * t235 + t206 * t233;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t239 + c_proximal_leg1 * t235
-            + minus_gdistal_wx_leg1 * t233;
-        let t250 = t38 * t235 - t120 * t239 - t185 * t233;
-        let t251 = minus_s_distal_leg1 * t39 * t250;
-        let t252 = rate_distal_leg1 * t251;
-        let t255 = 0.7071067811865475 * t33;
-        let minus_rate_wrist_leg1 = 0.7071067811865475 * t13 * t239 - t255 * t235
-            - 0.7071067811865475 * t18 * t233 - t251;
-        let t263 = t252 - rate_distal_leg1 * minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t39 * t263;
-        let t265 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t130 * t168
+            - t171 * t140;
+        let t195 = t183 * t194;
+        let t197 = t122 * t140 - t171 * t195;
+        let t201 = t130 * t118 + t119 * t197 + t168 * t195;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t201 + c_proximal_leg1 * t197
+            + minus_gdistal_wx_leg1 * t195;
+        let t211 = t31 * t197 - t84 * t201 - t147 * t195;
+        let minus_rate_proximal_leg1 = t24 * t211;
+        let t213 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t214 = rate_distal_leg1 * t213;
+        let t219 = t9 * t197 - t5 * t201 + t14 * t195;
+        let t224 = t27 * t197 - t12 * t201 + t17 * t195;
+        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * (t219 - t224) + t213;
+        let t229 = t214 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t24 * t229;
+        let t231 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t239 + gdistal_wy_leg2 * t235
-            - gdistal_wy_leg2 * t233;
-        let t278 = t63 * t235 - t128 * t239 - t189 * t233;
-        let t279 = minus_s_distal_leg2 * t64 * t278;
-        let t280 = rate_distal_leg2 * t279;
-        let t281 = 0.7071067811865475 * t124;
-        let minus_rate_wrist_leg2 = t281 * t239 - 0.7071067811865475 * t43 * t235
-            - 0.7071067811865475 * t45 * t233 - t279;
-        let t291 = t280 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t64 * t291;
-        let t293 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t201 + gdistal_wy_leg2 * t197
+            - gdistal_wy_leg2 * t195;
+        let t243 = t48 * t197 - t91 * t201 - t151 * t195;
+        let minus_rate_proximal_leg2 = t43 * t243;
+        let t245 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t246 = rate_distal_leg2 * t245;
+        let t251 = t34 * t197 - t87 * t201 + t36 * t195;
+        let minus_rate_wrist_leg2 = 0.7071067811865475 * (t224 - t251) - t245;
+        let t256 = t246 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t43 * t256;
+        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t233
-            - (gdistal_wx_leg3 * t239 + c_proximal_leg3 * t235);
-        let t307 = t86 * t235 - t137 * t239 + t181 * t233;
-        let t308 = s_distal_leg3 * t87 * t307;
-        let t309 = rate_distal_leg3 * t308;
-        let t310 = 0.7071067811865475 * t81;
-        let minus_rate_wrist_leg3 = t308 + t310 * t235 - 0.7071067811865475 * t69 * t239
-            + 0.7071067811865475 * t68 * t233;
-        let t320 = t309 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t87 * t320;
-        let t322 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t195
+            - (gdistal_wx_leg3 * t201 + c_proximal_leg3 * t197);
+        let t271 = t61 * t197 - t100 * t201 + t143 * t195;
+        let minus_rate_proximal_leg3 = t57 * t271;
+        let t273 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t274 = rate_distal_leg3 * t273;
+        let minus_rate_wrist_leg3 = t273 + 0.7071067811865475 * (t219 + t224);
+        let t279 = t274 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t57 * t279;
+        let t281 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t239
-            + minus_gdistal_wy_leg4 * t235 + minus_gdistal_wy_leg4 * t233;
-        let t336 = t110 * t235 - t145 * t239 + t195 * t233;
-        let t337 = s_distal_leg4 * t111 * t336;
-        let t338 = minus_rate_distal_leg4 * t337;
-        let t341 = 0.7071067811865475 * t141;
-        let minus_rate_wrist_leg4 = t337 + 0.7071067811865475 * t92 * t235 - t341 * t239
-            + 0.7071067811865475 * t91 * t233;
-        let t349 = t338 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t111 * t349;
-        let t351 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t353 = minus_gproximal_wx_leg1 * t265 + minus_gproximal_wx_leg2 * t293
-            + minus_gproximal_wx_leg3 * t322 + minus_gproximal_wx_leg4 * t351;
-        let t362 = t157 * t353
-            - (minus_gproximal_wy_leg1 * t265 + minus_gproximal_wy_leg2 * t293
-                + minus_gproximal_wy_leg3 * t322 + minus_gproximal_wy_leg4 * t351);
-        let t374 = gproximal_wz_leg1 * t265 + gproximal_wz_leg2 * t293
-            - minus_gproximal_wz_leg3 * t322 - minus_gproximal_wz_leg4 * t351
-            + t206 * t353 - t209 * t362;
-        let t375 = t221 * t374;
-        let t377 = t160 * t362 - t209 * t375;
-        let t383 = t156 * t353 + t157 * t377 + t206 * t375;
-        let t387 = t9 * t377 - t5 * t383 + t14 * t375;
-        let t393 = t9 * t235 - t5 * t239 + t14 * t233;
-        let t398 = t32 * t235 - t12 * t239 + t17 * t233;
-        let t399 = t393 * t398;
-        let t400 = t123 * t399;
-        let t406 = t42 * t235 - t123 * t239 + t44 * t233;
-        let t407 = t393 * t406;
-        let t408 = t12 * t407;
-        let t411 = t42 * t399;
-        let t413 = t32 * t407;
-        let t416 = t44 * t399;
-        let t418 = t17 * t407;
-        let t420 = t406 * t398;
-        let t421 = t420 + t387;
-        let t427 = t42 * t377 - t123 * t383 + t44 * t375;
-        let t428 = t399 - t427;
-        let t431 = t393 * t393;
-        let t432 = t406 * t406;
-        let t433 = t431 - t432;
-        let t450 = t32 * t377 - t12 * t383 + t17 * t375;
-        let t451 = t407 + t450;
-        let t453 = t398 * t398;
-        let t454 = t453 - t431;
-        let t457 = t420 - t387;
-        let t471 = t5 * t420;
-        let t475 = t9 * t420;
-        let t479 = t14 * t420;
-        let t482 = t432 - t453;
-        let t484 = t407 - t450;
-        let t487 = t399 + t427;
-        let t509 = 9.81 * t44;
-        let t511 = 9.81 * t17;
-        let t518 = 9.81 * t14;
-        let t535 = t38 * t377 - t120 * t383 - t185 * t375 - t263;
-        let minus_rate_dot_proximal_leg1 = t39 * t535;
-        let t545 = t63 * t377 - t128 * t383 - t189 * t375 - t291;
-        let minus_rate_dot_proximal_leg2 = t64 * t545;
-        let t555 = t86 * t377 - t137 * t383 + t181 * t375 + t320;
-        let minus_rate_dot_proximal_leg3_2 = t87 * t555;
-        let t565 = t110 * t377 - t145 * t383 + t195 * t375 - t349;
-        let minus_rate_dot_proximal_leg4 = t111 * t565;
-        let t570 = 6.936717523440031 * s_proximal_leg1;
-        let t574 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t578 = 6.936717523440031 * s_proximal_leg3;
-        let t582 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t586 = 6.936717523440031 * c_proximal_leg1;
-        let t590 = 6.936717523440031 * c_proximal_leg2;
-        let t594 = 6.936717523440031 * c_proximal_leg3;
-        let t598 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t39 * t250;
-        let minus_rate_proximal_leg2 = t64 * t278;
-        let minus_rate_proximal_leg3 = t87 * t307;
-        let minus_rate_proximal_leg4 = t111 * t336;
-        let t630 = t535 + t252;
-        let t632 = t250 * rate_distal_leg1;
-        let t634 = c_distal_leg1 * t630 + minus_s_distal_leg1 * t632;
-        let t636 = t250 * t251;
-        let t637 = minus_gdistal_wx_leg1 * t636;
-        let t644 = t545 + t280;
-        let t646 = t278 * rate_distal_leg2;
-        let t648 = c_distal_leg2 * t644 + minus_s_distal_leg2 * t646;
-        let t650 = t278 * t279;
-        let t654 = gdistal_wy_leg2 * t650;
-        let t658 = t307 * t308;
-        let t659 = gdistal_wx_leg3 * t658;
-        let t660 = t307 * rate_distal_leg3;
-        let t662 = t555 - t309;
-        let t664 = s_distal_leg3 * t660 - c_distal_leg3 * t662;
-        let t672 = t565 + t338;
-        let t674 = t336 * minus_rate_distal_leg4;
-        let t676 = c_distal_leg4 * t672 + s_distal_leg4 * t674;
-        let t678 = t336 * t337;
-        let t682 = minus_gdistal_wy_leg4 * t678;
-        let t686 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t692 = c_distal_leg1 * (t632 - (t686 - t632))
-            - minus_s_distal_leg1 * (t252 + t630);
-        let t694 = t250 * t250;
-        let t695 = t251 * t251;
-        let t696 = t694 - t695;
-        let t697 = minus_gdistal_wx_leg1 * t696;
-        let t704 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t710 = c_distal_leg2 * (t646 - (t704 - t646))
-            - minus_s_distal_leg2 * (t280 + t644);
-        let t712 = t278 * t278;
-        let t713 = t279 * t279;
-        let t714 = t712 - t713;
-        let t717 = gdistal_wy_leg2 * t714;
-        let t722 = t307 * t307;
-        let t723 = t308 * t308;
-        let t724 = t722 - t723;
-        let t725 = gdistal_wx_leg3 * t724;
-        let t726 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t732 = c_distal_leg3 * (t660 + t726 + t660) + s_distal_leg3 * (t662 - t309);
-        let t740 = t336 * t336;
-        let t741 = t337 * t337;
-        let t742 = t740 - t741;
-        let t746 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t750 = s_distal_leg4 * (t338 + t672) - c_distal_leg4 * (t674 + t674 - t746);
-        let t754 = minus_gdistal_wy_leg4 * t742;
-        let minus_rate_dot_distal_leg1 = t250 * minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t383 + c_proximal_leg1 * t377
-            + minus_gdistal_wx_leg1 * t375 - minus_rate_dot_distal_leg1;
-        let t767 = rate_distal_leg1 * rate_distal_leg1;
-        let t770 = c_distal_leg1 * (t636 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t767 - t694);
-        let t772 = minus_gdistal_wx_leg1 * t535;
-        let minus_rate_dot_distal_leg2 = t278 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t383 + gdistal_wy_leg2 * t377
-            - gdistal_wy_leg2 * t375 - minus_rate_dot_distal_leg2;
-        let t788 = rate_distal_leg2 * rate_distal_leg2;
-        let t791 = c_distal_leg2 * (t650 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t788 - t712);
-        let t796 = gdistal_wy_leg2 * t545;
-        let t800 = gdistal_wx_leg3 * t555;
-        let t801 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t307 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t375
-            - (gdistal_wx_leg3 * t383 + c_proximal_leg3 * t377)
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t201
+            + minus_gdistal_wy_leg4 * t197 + minus_gdistal_wy_leg4 * t195;
+        let t294 = t76 * t197 - t107 * t201 + t157 * t195;
+        let minus_rate_proximal_leg4 = t70 * t294;
+        let t296 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t297 = minus_rate_distal_leg4 * t296;
+        let minus_rate_wrist_leg4 = t296 + 0.7071067811865475 * (t251 + t224);
+        let t302 = t297 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t70 * t302;
+        let t304 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t306 = minus_gproximal_wx_leg1 * t231 + minus_gproximal_wx_leg2 * t258
+            + minus_gproximal_wx_leg3 * t281 + minus_gproximal_wx_leg4 * t304;
+        let t315 = t119 * t306
+            - (minus_gproximal_wy_leg1 * t231 + minus_gproximal_wy_leg2 * t258
+                + minus_gproximal_wy_leg3 * t281 + minus_gproximal_wy_leg4 * t304);
+        let t327 = gproximal_wz_leg1 * t231 + gproximal_wz_leg2 * t258
+            - minus_gproximal_wz_leg3 * t281 - minus_gproximal_wz_leg4 * t304
+            + t168 * t306 - t171 * t315;
+        let t328 = t183 * t327;
+        let t330 = t122 * t315 - t171 * t328;
+        let t336 = t118 * t306 + t119 * t330 + t168 * t328;
+        let t340 = t9 * t330 - t5 * t336 + t14 * t328;
+        let t342 = t219 * t224;
+        let t343 = t87 * t342;
+        let t345 = t219 * t251;
+        let t346 = t12 * t345;
+        let t349 = t34 * t342;
+        let t351 = t27 * t345;
+        let t354 = t36 * t342;
+        let t356 = t17 * t345;
+        let t362 = t34 * t330 - t87 * t336 + t36 * t328;
+        let t363 = t362 - t342;
+        let t365 = t251 * t224;
+        let t366 = t340 + t365;
+        let t369 = t219 * t219;
+        let t370 = t251 * t251;
+        let t371 = t369 - t370;
+        let t388 = t27 * t330 - t12 * t336 + t17 * t328;
+        let t389 = t388 + t345;
+        let t391 = t224 * t224;
+        let t392 = t391 - t369;
+        let t395 = t340 - t365;
+        let t409 = t5 * t365;
+        let t413 = t9 * t365;
+        let t417 = t14 * t365;
+        let t420 = t370 - t391;
+        let t422 = t388 - t345;
+        let t425 = t362 + t342;
+        let t458 = t31 * t330 - t84 * t336 - t147 * t328 - t229;
+        let minus_rate_dot_proximal_leg1 = t24 * t458;
+        let t468 = t48 * t330 - t91 * t336 - t151 * t328 - t256;
+        let minus_rate_dot_proximal_leg2 = t43 * t468;
+        let t478 = t61 * t330 - t100 * t336 + t143 * t328 + t279;
+        let minus_rate_dot_proximal_leg3_2 = t57 * t478;
+        let t488 = t76 * t330 - t107 * t336 + t157 * t328 - t302;
+        let minus_rate_dot_proximal_leg4 = t70 * t488;
+        let t493 = 6.936717523440031 * s_proximal_leg1;
+        let t497 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t501 = 6.936717523440031 * s_proximal_leg3;
+        let t505 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t509 = 6.936717523440031 * c_proximal_leg1;
+        let t513 = 6.936717523440031 * c_proximal_leg2;
+        let t517 = 6.936717523440031 * c_proximal_leg3;
+        let t521 = 6.936717523440031 * c_proximal_leg4;
+        let t550 = t214 + t458 + t214;
+        let t551 = c_distal_leg1 * t550;
+        let t553 = t211 * t213;
+        let t554 = minus_gdistal_wx_leg1 * t553;
+        let t562 = t246 + t468 + t246;
+        let t563 = c_distal_leg2 * t562;
+        let t565 = t243 * t245;
+        let t569 = gdistal_wy_leg2 * t565;
+        let t573 = t271 * t273;
+        let t574 = gdistal_wx_leg3 * t573;
+        let t576 = t478 - t274 - t274;
+        let t577 = c_distal_leg3 * t576;
+        let t586 = t297 + t488 + t297;
+        let t587 = c_distal_leg4 * t586;
+        let t589 = t294 * t296;
+        let t593 = minus_gdistal_wy_leg4 * t589;
+        let t597 = t211 * rate_distal_leg1;
+        let t598 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t603 = c_distal_leg1 * (t597 - (t598 - t597)) - minus_s_distal_leg1 * t550;
+        let t605 = t211 * t211;
+        let t606 = t213 * t213;
+        let t607 = t605 - t606;
+        let t608 = minus_gdistal_wx_leg1 * t607;
+        let t615 = t243 * rate_distal_leg2;
+        let t616 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t621 = c_distal_leg2 * (t615 - (t616 - t615)) - minus_s_distal_leg2 * t562;
+        let t623 = t243 * t243;
+        let t624 = t245 * t245;
+        let t625 = t623 - t624;
+        let t628 = gdistal_wy_leg2 * t625;
+        let t633 = t271 * t271;
+        let t634 = t273 * t273;
+        let t635 = t633 - t634;
+        let t636 = gdistal_wx_leg3 * t635;
+        let t637 = t271 * rate_distal_leg3;
+        let t638 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t643 = c_distal_leg3 * (t637 + t638 + t637) + s_distal_leg3 * t576;
+        let t651 = t294 * t294;
+        let t652 = t296 * t296;
+        let t653 = t651 - t652;
+        let t656 = t294 * minus_rate_distal_leg4;
+        let t657 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t661 = s_distal_leg4 * t586 - c_distal_leg4 * (t656 + t656 - t657);
+        let t665 = minus_gdistal_wy_leg4 * t653;
+        let minus_minus_rate_dot_distal_leg1 = t211 * minus_minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t336 + c_proximal_leg1 * t330
+            + minus_gdistal_wx_leg1 * t328 + minus_minus_rate_dot_distal_leg1;
+        let t678 = rate_distal_leg1 * rate_distal_leg1;
+        let t681 = c_distal_leg1 * (t553 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t678 - t605);
+        let t683 = minus_gdistal_wx_leg1 * t458;
+        let minus_rate_dot_distal_leg2 = t243 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t336 + gdistal_wy_leg2 * t330
+            - gdistal_wy_leg2 * t328 - minus_rate_dot_distal_leg2;
+        let t699 = rate_distal_leg2 * rate_distal_leg2;
+        let t702 = c_distal_leg2 * (t565 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t699 - t623);
+        let t707 = gdistal_wy_leg2 * t468;
+        let t711 = gdistal_wx_leg3 * t478;
+        let t712 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t271 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t328
+            - (gdistal_wx_leg3 * t336 + c_proximal_leg3 * t330)
             - minus_rate_dot_distal_leg3;
-        let t813 = s_distal_leg3 * (t801 - t722)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t658);
-        let minus_rate_dot_distal_leg4 = t336 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t383
-            + minus_gdistal_wy_leg4 * t377 + minus_gdistal_wy_leg4 * t375
+        let t724 = s_distal_leg3 * (t712 - t633)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t573);
+        let minus_rate_dot_distal_leg4 = t294 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t336
+            + minus_gdistal_wy_leg4 * t330 + minus_gdistal_wy_leg4 * t328
             + minus_rate_dot_distal_leg4;
-        let t831 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t834 = c_distal_leg4 * (t678 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t831 - t740);
-        let t838 = minus_gdistal_wy_leg4 * t565;
-        let t846 = minus_s_distal_leg1 * (t636 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t695 - t767);
-        let t848 = minus_gdistal_wx_leg1 * t686;
-        let t859 = minus_s_distal_leg2 * (t650 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t713 - t788);
-        let t863 = gdistal_wy_leg2 * t704;
-        let t872 = s_distal_leg3 * (t658 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t723 - t801);
-        let t874 = gdistal_wx_leg3 * t726;
-        let t885 = c_distal_leg4 * (t741 - t831)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t678);
-        let t890 = minus_gdistal_wy_leg4 * t746;
-        let t894 = 6.936717523440031 * t38;
-        let t900 = 9.81 * (t255 * c_proximal_leg1 - 0.5 * (t13 * s_proximal_leg1));
-        let t910 = 6.936717523440031 * t128;
-        let t922 = 9.81 * (0.5 * (t43 * minus_s_proximal_leg2) - t281 * c_proximal_leg2);
-        let t926 = 6.936717523440031 * t86;
-        let t932 = 9.81 * (t310 * c_proximal_leg3 - 0.5 * (t69 * s_proximal_leg3));
-        let t946 = 6.936717523440031 * t145;
-        let t953 = 9.81 * (0.5 * (t92 * minus_s_proximal_leg4) - t341 * c_proximal_leg4);
+        let t742 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t745 = c_distal_leg4 * (t589 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t742 - t651);
+        let t749 = minus_gdistal_wy_leg4 * t488;
+        let t757 = minus_s_distal_leg1 * (t553 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t606 - t678);
+        let t759 = minus_gdistal_wx_leg1 * t598;
+        let t770 = minus_s_distal_leg2 * (t565 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t624 - t699);
+        let t774 = gdistal_wy_leg2 * t616;
+        let t783 = s_distal_leg3 * (t573 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t634 - t712);
+        let t785 = gdistal_wx_leg3 * t638;
+        let t796 = c_distal_leg4 * (t652 - t742)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t589);
+        let t801 = minus_gdistal_wy_leg4 * t657;
+        let t805 = 6.936717523440031 * t31;
+        let t807 = t18 * (-6.936717523440031);
+        let t808 = minus_gdistal_wx_leg1 * t807;
+        let t815 = 6.936717523440031 * t91;
+        let t821 = 0.7071067811865475 * t37 * t497;
+        let t825 = 6.936717523440031 * t61;
+        let t827 = t95 * 6.936717523440031;
+        let t828 = gdistal_wx_leg3 * t827;
+        let t836 = 6.936717523440031 * t107;
+        let t840 = t505 * (0.7071067811865475 * t71);
         Ok([
             [
-                t5 * t387 + t400 - t408, t123 * t421 - t5 * t428 + t12 * t433,
-                t5 * t451 + t123 * t454 - t12 * t457, t123 * t427 - t471 + t408,
-                t5 * t482 - t123 * t484 + t12 * t487, t471 - t400 + t12 * t450,
-                t12 * t509 - t123 * t511, t5 * t511 - t12 * t518, t123 * t518 - t5 * t509,
-                minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
+                t5 * t340 + t343 - t346, t5 * t363 + t87 * t366 + t12 * t371,
+                t5 * t389 + t87 * t392 + t12 * t395, t87 * t362 - t409 + t346,
+                t5 * t420 + t87 * t422 + t12 * t425, t409 - t343 + t12 * t388, 9.81 * t9,
+                9.81 * t34, 9.81 * t27, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2,
                 minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wx_leg1 * t570, -(minus_gproximal_wx_leg2 * t574),
-                minus_gproximal_wx_leg3 * t578, -(minus_gproximal_wx_leg4 * t582),
-                minus_gproximal_wx_leg1 * t586, minus_gproximal_wx_leg2 * t590,
-                minus_gproximal_wx_leg3 * t594, minus_gproximal_wx_leg4 * t598,
+                minus_gproximal_wx_leg1 * t493, -(minus_gproximal_wx_leg2 * t497),
+                minus_gproximal_wx_leg3 * t501, -(minus_gproximal_wx_leg4 * t505),
+                minus_gproximal_wx_leg1 * t509, minus_gproximal_wx_leg2 * t513,
+                minus_gproximal_wx_leg3 * t517, minus_gproximal_wx_leg4 * t521,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
@@ -6648,43 +6426,40 @@ impl Spherical4Rrr {
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
                 -minus_gproximal_wx_leg4,
-                minus_gproximal_wx_leg1 * t634 + t637,
-                minus_gproximal_wx_leg2 * t648 + c_proximal_leg2 * t650,
-                t659 - minus_gproximal_wx_leg3 * t664,
-                minus_gproximal_wx_leg4 * t676 + c_proximal_leg4 * t678,
-                -(minus_gproximal_wx_leg1 * t692 + t697),
-                -(minus_gproximal_wx_leg2 * t710 + c_proximal_leg2 * t714),
-                t725 - minus_gproximal_wx_leg3 * t732,
-                c_proximal_leg4 * t742 - minus_gproximal_wx_leg4 * t750,
-                minus_gproximal_wx_leg1 * t770 - t772,
-                minus_gproximal_wx_leg2 * t791 - c_proximal_leg2 * t545,
-                t800 - minus_gproximal_wx_leg3 * t813,
-                c_proximal_leg4 * t565 - minus_gproximal_wx_leg4 * t834,
-                -(minus_gproximal_wx_leg1 * t846 + t848),
-                -(minus_gproximal_wx_leg2 * t859 + c_proximal_leg2 * t704),
-                -(minus_gproximal_wx_leg3 * t872 + t874),
-                minus_gproximal_wx_leg4 * t885 - c_proximal_leg4 * t746,
-                -(minus_gproximal_wx_leg1 * t894 + t900),
-                minus_gproximal_wx_leg2 * t910
-                    - c_proximal_leg2
-                        * (c_distal_leg2 * t590 - 3.4683587617200153 * t46),
-                minus_gproximal_wx_leg3 * t926 + t932,
-                c_proximal_leg4 * (c_distal_leg4 * t598 + 3.4683587617200153 * t93)
-                    - minus_gproximal_wx_leg4 * t946,
+                minus_gproximal_wx_leg1 * t551 + t554,
+                minus_gproximal_wx_leg2 * t563 + c_proximal_leg2 * t565,
+                t574 + minus_gproximal_wx_leg3 * t577,
+                minus_gproximal_wx_leg4 * t587 + c_proximal_leg4 * t589,
+                -(minus_gproximal_wx_leg1 * t603 + t608),
+                -(minus_gproximal_wx_leg2 * t621 + c_proximal_leg2 * t625),
+                t636 - minus_gproximal_wx_leg3 * t643,
+                c_proximal_leg4 * t653 - minus_gproximal_wx_leg4 * t661,
+                minus_gproximal_wx_leg1 * t681 - t683,
+                minus_gproximal_wx_leg2 * t702 - c_proximal_leg2 * t468,
+                t711 - minus_gproximal_wx_leg3 * t724,
+                c_proximal_leg4 * t488 - minus_gproximal_wx_leg4 * t745,
+                -(minus_gproximal_wx_leg1 * t757 + t759),
+                -(minus_gproximal_wx_leg2 * t770 + c_proximal_leg2 * t616),
+                -(minus_gproximal_wx_leg3 * t783 + t785),
+                minus_gproximal_wx_leg4 * t796 - c_proximal_leg4 * t657,
+                -(minus_gproximal_wx_leg1 * t805 + t808),
+                minus_gproximal_wx_leg2 * t815 + t37 * t513,
+                minus_gproximal_wx_leg3 * t825 + t828,
+                t71 * t521 - minus_gproximal_wx_leg4 * t836,
             ],
             [
-                t9 * t387 + t411 - t413, t42 * t421 - t9 * t428 + t32 * t433,
-                t9 * t451 + t42 * t454 - t32 * t457, t42 * t427 - t475 + t413,
-                t9 * t482 - t42 * t484 + t32 * t487, t475 - t411 + t32 * t450,
-                t32 * t509 - t42 * t511, t9 * t511 - t32 * t518, t42 * t518 - t9 * t509,
+                t9 * t340 + t349 - t351, t9 * t363 + t34 * t366 + t27 * t371,
+                t9 * t389 + t34 * t392 + t27 * t395, t34 * t362 - t413 + t351,
+                t9 * t420 + t34 * t422 + t27 * t425, t413 - t349 + t27 * t388, -(9.81 * t5),
+                -(9.81 * t87), -(9.81 * t12),
                 minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2,
                 minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wy_leg1 * t570, -(minus_gproximal_wy_leg2 * t574),
-                minus_gproximal_wy_leg3 * t578, -(minus_gproximal_wy_leg4 * t582),
-                minus_gproximal_wy_leg1 * t586, minus_gproximal_wy_leg2 * t590,
-                minus_gproximal_wy_leg3 * t594, minus_gproximal_wy_leg4 * t598,
+                minus_gproximal_wy_leg1 * t493, -(minus_gproximal_wy_leg2 * t497),
+                minus_gproximal_wy_leg3 * t501, -(minus_gproximal_wy_leg4 * t505),
+                minus_gproximal_wy_leg1 * t509, minus_gproximal_wy_leg2 * t513,
+                minus_gproximal_wy_leg3 * t517, minus_gproximal_wy_leg4 * t521,
                 minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
@@ -6709,42 +6484,39 @@ impl Spherical4Rrr {
                 -minus_gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                minus_gproximal_wy_leg1 * t634 - c_proximal_leg1 * t636,
-                minus_gproximal_wy_leg2 * t648 - t654,
-                -(minus_gproximal_wy_leg3 * t664 + c_proximal_leg3 * t658),
-                minus_gproximal_wy_leg4 * t676 - t682,
-                c_proximal_leg1 * t696 - minus_gproximal_wy_leg1 * t692,
-                t717 - minus_gproximal_wy_leg2 * t710,
-                -(minus_gproximal_wy_leg3 * t732 + c_proximal_leg3 * t724),
-                -(minus_gproximal_wy_leg4 * t750 + t754),
-                minus_gproximal_wy_leg1 * t770 + c_proximal_leg1 * t535,
-                minus_gproximal_wy_leg2 * t791 + t796,
-                -(minus_gproximal_wy_leg3 * t813 + c_proximal_leg3 * t555),
-                -(minus_gproximal_wy_leg4 * t834 + t838),
-                c_proximal_leg1 * t686 - minus_gproximal_wy_leg1 * t846,
-                t863 - minus_gproximal_wy_leg2 * t859,
-                c_proximal_leg3 * t726 - minus_gproximal_wy_leg3 * t872,
-                minus_gproximal_wy_leg4 * t885 + t890,
-                c_proximal_leg1 * (c_distal_leg1 * t586 - 3.4683587617200153 * t19)
-                    - minus_gproximal_wy_leg1 * t894,
-                minus_gproximal_wy_leg2 * t910 - t922,
-                minus_gproximal_wy_leg3 * t926
-                    - c_proximal_leg3
-                        * (c_distal_leg3 * t594 + 3.4683587617200153 * t70),
-                t953 - minus_gproximal_wy_leg4 * t946,
+                minus_gproximal_wy_leg1 * t551 - c_proximal_leg1 * t553,
+                minus_gproximal_wy_leg2 * t563 - t569,
+                -(c_proximal_leg3 * t573 - minus_gproximal_wy_leg3 * t577),
+                minus_gproximal_wy_leg4 * t587 - t593,
+                c_proximal_leg1 * t607 - minus_gproximal_wy_leg1 * t603,
+                t628 - minus_gproximal_wy_leg2 * t621,
+                -(minus_gproximal_wy_leg3 * t643 + c_proximal_leg3 * t635),
+                -(minus_gproximal_wy_leg4 * t661 + t665),
+                minus_gproximal_wy_leg1 * t681 + c_proximal_leg1 * t458,
+                minus_gproximal_wy_leg2 * t702 + t707,
+                -(minus_gproximal_wy_leg3 * t724 + c_proximal_leg3 * t478),
+                -(minus_gproximal_wy_leg4 * t745 + t749),
+                c_proximal_leg1 * t598 - minus_gproximal_wy_leg1 * t757,
+                t774 - minus_gproximal_wy_leg2 * t770,
+                c_proximal_leg3 * t638 - minus_gproximal_wy_leg3 * t783,
+                minus_gproximal_wy_leg4 * t796 + t801,
+                c_proximal_leg1 * t807 - minus_gproximal_wy_leg1 * t805,
+                minus_gproximal_wy_leg2 * t815 - t821,
+                minus_gproximal_wy_leg3 * t825 - c_proximal_leg3 * t827,
+                -(t840 + minus_gproximal_wy_leg4 * t836),
             ],
             [
-                t14 * t387 + t416 - t418, t44 * t421 - t14 * t428 + t17 * t433,
-                t14 * t451 + t44 * t454 - t17 * t457, t44 * t427 - t479 + t418,
-                t14 * t482 - t44 * t484 + t17 * t487, t479 - t416 + t17 * t450, 0.0, 0.0, 0.0,
+                t14 * t340 + t354 - t356, t14 * t363 + t36 * t366 + t17 * t371,
+                t14 * t389 + t36 * t392 + t17 * t395, t36 * t362 - t417 + t356,
+                t14 * t420 + t36 * t422 + t17 * t425, t417 - t354 + t17 * t388, 0.0, 0.0, 0.0,
                 -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wz_leg1 * t570),
-                gproximal_wz_leg2 * t574, minus_gproximal_wz_leg3 * t578,
-                -(minus_gproximal_wz_leg4 * t582), -(gproximal_wz_leg1 * t586),
-                -(gproximal_wz_leg2 * t590), minus_gproximal_wz_leg3 * t594,
-                minus_gproximal_wz_leg4 * t598, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wz_leg1 * t493),
+                gproximal_wz_leg2 * t497, minus_gproximal_wz_leg3 * t501,
+                -(minus_gproximal_wz_leg4 * t505), -(gproximal_wz_leg1 * t509),
+                -(gproximal_wz_leg2 * t513), minus_gproximal_wz_leg3 * t517,
+                minus_gproximal_wz_leg4 * t521, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
@@ -6762,26 +6534,26 @@ impl Spherical4Rrr {
                 gproximal_wz_leg2,
                 -minus_gproximal_wz_leg3,
                 -minus_gproximal_wz_leg4,
-                -(gproximal_wz_leg1 * t634 + t637),
-                t654 - gproximal_wz_leg2 * t648,
-                t659 - minus_gproximal_wz_leg3 * t664,
-                minus_gproximal_wz_leg4 * t676 - t682,
-                gproximal_wz_leg1 * t692 + t697,
-                gproximal_wz_leg2 * t710 - t717,
-                t725 - minus_gproximal_wz_leg3 * t732,
-                -(minus_gproximal_wz_leg4 * t750 + t754),
-                t772 - gproximal_wz_leg1 * t770,
-                -(gproximal_wz_leg2 * t791 + t796),
-                t800 - minus_gproximal_wz_leg3 * t813,
-                -(minus_gproximal_wz_leg4 * t834 + t838),
-                gproximal_wz_leg1 * t846 + t848,
-                gproximal_wz_leg2 * t859 - t863,
-                -(minus_gproximal_wz_leg3 * t872 + t874),
-                minus_gproximal_wz_leg4 * t885 + t890,
-                gproximal_wz_leg1 * t894 + t900,
-                t922 - gproximal_wz_leg2 * t910,
-                minus_gproximal_wz_leg3 * t926 + t932,
-                t953 - minus_gproximal_wz_leg4 * t946,
+                -(gproximal_wz_leg1 * t551 + t554),
+                t569 - gproximal_wz_leg2 * t563,
+                t574 + minus_gproximal_wz_leg3 * t577,
+                minus_gproximal_wz_leg4 * t587 - t593,
+                gproximal_wz_leg1 * t603 + t608,
+                gproximal_wz_leg2 * t621 - t628,
+                t636 - minus_gproximal_wz_leg3 * t643,
+                -(minus_gproximal_wz_leg4 * t661 + t665),
+                t683 - gproximal_wz_leg1 * t681,
+                -(gproximal_wz_leg2 * t702 + t707),
+                t711 - minus_gproximal_wz_leg3 * t724,
+                -(minus_gproximal_wz_leg4 * t745 + t749),
+                gproximal_wz_leg1 * t757 + t759,
+                gproximal_wz_leg2 * t770 - t774,
+                -(minus_gproximal_wz_leg3 * t783 + t785),
+                minus_gproximal_wz_leg4 * t796 + t801,
+                gproximal_wz_leg1 * t805 + t808,
+                t821 - gproximal_wz_leg2 * t815,
+                minus_gproximal_wz_leg3 * t825 + t828,
+                -(t840 + minus_gproximal_wz_leg4 * t836),
             ],
         ])
     }
@@ -6795,7 +6567,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 933 operations (338 additions, 586 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 823 intermediates.
+    /// 872 operations (318 additions, 545 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 762 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6818,423 +6590,405 @@ impl Spherical4Rrr {
         let t12 = pose[2] * t6;
         let t13 = t2 - t12;
         let t14 = t11 - t13;
-        let t15 = t10 + t14;
-        let minus_s_distal_leg2 = 0.5 * t15;
-        let t19 = 1.0 - 0.25 * (t15 * t15);
-        ::overact::guard::reach(t19, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let minus_s_distal_leg2 = 0.5 * (t10 + t14);
+        let t17 = t10 - t14;
+        let t21 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t21, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t21);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t14 * c_distal_leg2));
-        let t26 = t10 - t14;
-        let c_proximal_leg2 = t25 * (0.25 * (t26 * t26));
-        let t30 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t32 = 0.7071067811865475 * (t30 + c_distal_leg2);
-        let t33 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t32 * t33;
-        let t35 = pose[3] * t0;
-        let t36 = pose[0] * t6;
-        let t37 = t35 - t36;
-        let t38 = t37 + t13;
-        let t40 = 1.0 - t12 - t4;
-        let t41 = t35 + t36;
-        let t42 = t40 + t41;
-        let t43 = t38 - t42;
-        let s_distal_leg3 = 0.5 * t43;
-        let t47 = 1.0 - 0.25 * (t43 * t43);
-        ::overact::guard::reach(t47, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t47);
+        let c_proximal_leg2 = 0.25 * (t17 * t17) / (0.5 * (c_distal_leg2 * t17));
+        let t26 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t28 = 0.7071067811865475 * (t26 + c_distal_leg2);
+        let t29 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t28 * t29;
+        let t31 = pose[3] * t0;
+        let t32 = pose[0] * t6;
+        let t33 = t31 - t32;
+        let t34 = t33 + t13;
+        let t36 = 1.0 - t12 - t4;
+        let t37 = t31 + t32;
+        let t38 = t36 + t37;
+        let s_distal_leg3 = 0.5 * (t34 - t38);
+        let t42 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t42, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t42);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t53 = 1.0 / (0.5 * (t42 * c_distal_leg3 + t38 * c_distal_leg3));
-        let t54 = t42 + t38;
-        let c_proximal_leg3 = t53 * (0.25 * (t54 * t54));
-        let t58 = s_distal_leg3 * c_proximal_leg3;
-        let t60 = 0.7071067811865475 * (t58 + c_distal_leg3);
-        let t61 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = t60 * t61;
-        let t64 = pose[2] * t0;
-        let t65 = pose[0] * t3;
-        let t66 = t64 - t65;
-        let t67 = t66 - t41;
-        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t67 * t26));
-        let t71 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t71 * t33;
-        let t74 = 0.7071067811865475 * (t58 - c_distal_leg3);
-        let minus_gproximal_wz_leg3 = t74 * t61;
-        let t78 = t64 + t65;
-        let t79 = t78 + t9;
-        let s_proximal_leg3 = t53 * (0.35355339059327373 * (t79 * t54));
-        let t83 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t83 * t61;
-        let t85 = t40 - t41;
-        let t86 = t37 - t13;
-        let t87 = t85 + t86;
-        let minus_s_distal_leg1 = 0.5 * t87;
-        let t91 = 1.0 - 0.25 * (t87 * t87);
-        ::overact::guard::reach(t91, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t91);
+        let t44 = t38 + t34;
+        let t47 = 1.0 / (0.5 * (c_distal_leg3 * t44));
+        let c_proximal_leg3 = t47 * (0.25 * (t44 * t44));
+        let t51 = s_distal_leg3 * c_proximal_leg3;
+        let t53 = 0.7071067811865475 * (t51 + c_distal_leg3);
+        let t54 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = t53 * t54;
+        let t57 = pose[2] * t0;
+        let t58 = pose[0] * t3;
+        let t59 = t57 - t58;
+        let t61 = 0.7071067811865475 * (t59 - t37);
+        let minus_s_proximal_leg2 = t29 * t61;
+        let t63 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t63 * t29;
+        let t66 = 0.7071067811865475 * (t51 - c_distal_leg3);
+        let minus_gproximal_wz_leg3 = t66 * t54;
+        let t70 = t57 + t58;
+        let s_proximal_leg3 = t47 * (0.35355339059327373 * ((t70 + t9) * t44));
+        let t75 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t75 * t54;
+        let t77 = t36 - t37;
+        let t78 = t33 - t13;
+        let minus_s_distal_leg1 = 0.5 * (t77 + t78);
+        let t81 = t77 - t78;
+        let t85 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t85, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t85);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t97 = 1.0 / (0.5 * (t85 * c_distal_leg1 - t86 * c_distal_leg1));
-        let t98 = t85 - t86;
-        let c_proximal_leg1 = t97 * (0.25 * (t98 * t98));
-        let t102 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t104 = 0.7071067811865475 * (t102 - c_distal_leg1);
-        let t105 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t104 * t105;
-        let t109 = 0.7071067811865475 * (t102 + c_distal_leg1);
-        let gproximal_wz_leg1 = t109 * t105;
-        let t112 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
+        let c_proximal_leg1 = 0.25 * (t81 * t81) / (0.5 * (c_distal_leg1 * t81));
+        let t90 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t92 = 0.7071067811865475 * (t90 - c_distal_leg1);
+        let t93 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = t92 * t93;
+        let t97 = 0.7071067811865475 * (t90 + c_distal_leg1);
+        let gproximal_wz_leg1 = t97 * t93;
+        let t100 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wx_leg2;
-        let t114 = t78 - t9;
-        let s_proximal_leg1 = t97 * (0.35355339059327373 * (t114 * t98));
-        let t118 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t118 * t105;
-        let t122 = 0.7071067811865475 * (t30 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t122 * t33;
-        let t125 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
+        let t103 = 0.7071067811865475 * (t70 - t9);
+        let s_proximal_leg1 = t93 * t103;
+        let t105 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t105 * t93;
+        let t109 = 0.7071067811865475 * (t26 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t109 * t29;
+        let t112 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wy_leg2;
-        let t130 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t117 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg2;
-        let t132 = minus_gproximal_wy_leg3 * t112 - minus_gproximal_wx_leg3 * t125
-            - minus_gproximal_wz_leg3 * t130;
-        ::overact::guard::platform(t132, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t132, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t132, 0.7071067811865474, "kept actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t133;
-        let t139 = t40 * acceleration[0] + t78 * acceleration[1] + t37 * acceleration[2];
-        let t145 = t40 * twist[0] + t78 * twist[1] + t37 * twist[2];
-        let t150 = t41 * twist[0] + t9 * twist[1] + t13 * twist[2];
-        let t151 = t145 * t150;
-        let t152 = t5 * t151;
-        let t158 = t66 * twist[0] + t5 * twist[1] + t11 * twist[2];
-        let t159 = t145 * t158;
-        let t160 = t9 * t159;
-        let t161 = t78 * t139 + t152 - t160;
-        let t166 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t133;
-        let t168 = t66 * t151;
-        let t170 = t41 * t159;
-        let t171 = t40 * t139 + t168 - t170;
-        let t177 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t133;
-        let t179 = t11 * t151;
-        let t181 = t13 * t159;
-        let t182 = t37 * t139 + t179 - t181;
-        let t188 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t133;
-        let t193 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t133;
-        let t199 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t133;
-        let t202 = t125 * t133;
-        let t204 = t112 * t133;
-        let t207 = t130 * t133;
-        let t210 = t158 * t150;
-        let t211 = t210 + t139;
-        let t217 = t66 * acceleration[0] + t5 * acceleration[1] + t11 * acceleration[2];
-        let t218 = t151 - t217;
-        let t221 = t145 * t145;
-        let t222 = t158 * t158;
-        let t223 = t221 - t222;
-        let t225 = t5 * t211 - t78 * t218 + t9 * t223;
-        let t231 = t66 * t211 - t40 * t218 + t41 * t223;
-        let t238 = t11 * t211 - t37 * t218 + t13 * t223;
-        let t255 = t41 * acceleration[0] + t9 * acceleration[1] + t13 * acceleration[2];
-        let t256 = t159 + t255;
-        let t258 = t150 * t150;
-        let t259 = t258 - t221;
-        let t262 = t210 - t139;
-        let t264 = t78 * t256 + t5 * t259 - t9 * t262;
-        let t270 = t40 * t256 + t66 * t259 - t41 * t262;
-        let t277 = t37 * t256 + t11 * t259 - t13 * t262;
-        let t291 = t78 * t210;
-        let t293 = t5 * t217 - t291 + t160;
-        let t296 = t40 * t210;
-        let t298 = t66 * t217 - t296 + t170;
-        let t302 = t37 * t210;
-        let t304 = t11 * t217 - t302 + t181;
-        let t317 = t222 - t258;
-        let t319 = t159 - t255;
-        let t322 = t151 + t217;
-        let t324 = t78 * t317 - t5 * t319 + t9 * t322;
-        let t330 = t40 * t317 - t66 * t319 + t41 * t322;
-        let t337 = t37 * t317 - t11 * t319 + t13 * t322;
-        let t352 = t291 - t152 + t9 * t255;
-        let t356 = t296 - t168 + t41 * t255;
-        let t361 = t302 - t179 + t13 * t255;
-        let t374 = 9.81 * t11;
-        let t376 = 9.81 * t13;
-        let t378 = t9 * t374 - t5 * t376;
-        let t382 = t41 * t374 - t66 * t376;
-        let t392 = 9.81 * t37;
-        let t394 = t78 * t376 - t9 * t392;
-        let t398 = t40 * t376 - t41 * t392;
-        let t409 = t5 * t392 - t78 * t374;
-        let t413 = t66 * t392 - t40 * t374;
+        let t119 = minus_gproximal_wy_leg3 * t100 - minus_gproximal_wx_leg3 * t112
+            - minus_gproximal_wz_leg3 * t117;
+        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
+        let t120 = 1.0 / t119;
+        let t121 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t120;
+        let t126 = t36 * acceleration[0] + t70 * acceleration[1] + t33 * acceleration[2];
+        let t132 = t36 * twist[0] + t70 * twist[1] + t33 * twist[2];
+        let t137 = t37 * twist[0] + t9 * twist[1] + t13 * twist[2];
+        let t138 = t132 * t137;
+        let t139 = t5 * t138;
+        let t145 = t59 * twist[0] + t5 * twist[1] + t11 * twist[2];
+        let t146 = t132 * t145;
+        let t147 = t9 * t146;
+        let t148 = t70 * t126 + t139 - t147;
+        let t153 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t120;
+        let t155 = t59 * t138;
+        let t157 = t37 * t146;
+        let t158 = t36 * t126 + t155 - t157;
+        let t164 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t120;
+        let t166 = t11 * t138;
+        let t168 = t13 * t146;
+        let t169 = t33 * t126 + t166 - t168;
+        let t175 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t120;
+        let t180 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t120;
+        let t186 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t120;
+        let t189 = t112 * t120;
+        let t191 = t100 * t120;
+        let t194 = t117 * t120;
+        let t201 = t59 * acceleration[0] + t5 * acceleration[1] + t11 * acceleration[2];
+        let t202 = t201 - t138;
+        let t204 = t145 * t137;
+        let t205 = t126 + t204;
+        let t208 = t132 * t132;
+        let t209 = t145 * t145;
+        let t210 = t208 - t209;
+        let t212 = t70 * t202 + t5 * t205 + t9 * t210;
+        let t218 = t36 * t202 + t59 * t205 + t37 * t210;
+        let t225 = t33 * t202 + t11 * t205 + t13 * t210;
+        let t242 = t37 * acceleration[0] + t9 * acceleration[1] + t13 * acceleration[2];
+        let t243 = t242 + t146;
+        let t245 = t137 * t137;
+        let t246 = t245 - t208;
+        let t249 = t126 - t204;
+        let t251 = t70 * t243 + t5 * t246 + t9 * t249;
+        let t257 = t36 * t243 + t59 * t246 + t37 * t249;
+        let t264 = t33 * t243 + t11 * t246 + t13 * t249;
+        let t278 = t70 * t204;
+        let t280 = t5 * t201 - t278 + t147;
+        let t283 = t36 * t204;
+        let t285 = t59 * t201 - t283 + t157;
+        let t289 = t33 * t204;
+        let t291 = t11 * t201 - t289 + t168;
+        let t304 = t209 - t245;
+        let t306 = t242 - t146;
+        let t309 = t201 + t138;
+        let t311 = t70 * t304 + t5 * t306 + t9 * t309;
+        let t317 = t36 * t304 + t59 * t306 + t37 * t309;
+        let t324 = t33 * t304 + t11 * t306 + t13 * t309;
+        let t339 = t278 - t139 + t9 * t242;
+        let t343 = t283 - t155 + t37 * t242;
+        let t348 = t289 - t166 + t13 * t242;
+        let t361 = 9.81 * t70;
+        let t363 = 9.81 * t36;
+        let t372 = 9.81 * t5;
+        let t374 = 9.81 * t59;
+        let t383 = 9.81 * t9;
+        let t385 = 9.81 * t37;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t433 = minus_s_distal_leg1 * t105;
-        let t438 = t104 * twist[0] + t118 * twist[1] - t109 * twist[2];
-        let t439 = t433 * t438;
-        let t440 = rate_distal_leg1 * t439;
-        let rate_wrist_leg1 = t439 + 0.7071067811865475 * t85 * twist[0]
-            + 0.7071067811865475 * t114 * twist[1] + 0.7071067811865475 * t86 * twist[2];
-        let t452 = t104 * acceleration[0] + t118 * acceleration[1]
-            - t109 * acceleration[2] - (t440 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t105 * t452;
+        let t405 = minus_s_distal_leg1 * t93;
+        let t410 = t92 * twist[0] + t105 * twist[1] - t97 * twist[2];
+        let t411 = t405 * t410;
+        let t412 = rate_distal_leg1 * t411;
+        let rate_wrist_leg1 = t411 + 0.7071067811865475 * t77 * twist[0]
+            + t103 * twist[1] + 0.7071067811865475 * t78 * twist[2];
+        let t423 = t92 * acceleration[0] + t105 * acceleration[1] - t97 * acceleration[2]
+            - (t412 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t93 * t423;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t465 = minus_s_distal_leg2 * t33;
-        let t470 = t71 * twist[0] + t122 * twist[1] - t32 * twist[2];
-        let t471 = t465 * t470;
-        let t472 = rate_distal_leg2 * t471;
-        let rate_wrist_leg2 = t471 + 0.7071067811865475 * t67 * twist[0]
-            + 0.7071067811865475 * t10 * twist[1] + 0.7071067811865475 * t14 * twist[2];
-        let t484 = t71 * acceleration[0] + t122 * acceleration[1] - t32 * acceleration[2]
-            - (t472 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t33 * t484;
+        let t436 = minus_s_distal_leg2 * t29;
+        let t441 = t63 * twist[0] + t109 * twist[1] - t28 * twist[2];
+        let t442 = t436 * t441;
+        let t443 = rate_distal_leg2 * t442;
+        let rate_wrist_leg2 = t442 + t61 * twist[0] + 0.7071067811865475 * t10 * twist[1]
+            + 0.7071067811865475 * t14 * twist[2];
+        let t454 = t63 * acceleration[0] + t109 * acceleration[1] - t28 * acceleration[2]
+            - (t443 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t29 * t454;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t497 = s_distal_leg3 * t61;
-        let t502 = t60 * twist[0] + t83 * twist[1] + t74 * twist[2];
-        let t503 = t497 * t502;
-        let t504 = rate_distal_leg3 * t503;
-        let minus_rate_wrist_leg3 = t503 + 0.7071067811865475 * t42 * twist[0]
-            + 0.7071067811865475 * t79 * twist[1] + 0.7071067811865475 * t38 * twist[2];
-        let t516 = t60 * acceleration[0] + t83 * acceleration[1] + t74 * acceleration[2]
-            + t504 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t61 * t516;
-        let t518 = t11 + t13;
-        let t519 = t5 + t9;
-        let t520 = t518 - t519;
-        let s_distal_leg4 = 0.5 * t520;
-        let t524 = 1.0 - 0.25 * (t520 * t520);
-        ::overact::guard::reach(t524, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t524);
+        let t467 = s_distal_leg3 * t54;
+        let t472 = t53 * twist[0] + t75 * twist[1] + t66 * twist[2];
+        let t473 = t467 * t472;
+        let t474 = rate_distal_leg3 * t473;
+        let minus_rate_wrist_leg3 = t473 + 0.7071067811865475 * (t132 + t137);
+        let t480 = t53 * acceleration[0] + t75 * acceleration[1] + t66 * acceleration[2]
+            + t474 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t54 * t480;
+        let t482 = t11 + t13;
+        let t483 = t5 + t9;
+        let s_distal_leg4 = 0.5 * (t482 - t483);
+        let t487 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t487, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t487);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t530 = 1.0 / (0.5 * (t519 * c_distal_leg4 + t518 * c_distal_leg4));
-        let t531 = t66 + t41;
-        let t532 = t519 + t518;
-        let minus_s_proximal_leg4 = t530 * (0.35355339059327373 * (t531 * t532));
-        let t536 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t537 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t536 * t537;
-        let c_proximal_leg4 = t530 * (0.25 * (t532 * t532));
-        let t543 = s_distal_leg4 * c_proximal_leg4;
-        let t545 = 0.7071067811865475 * (t543 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t545 * t537;
-        let t550 = 0.7071067811865475 * (t543 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t550 * t537;
-        let t553 = minus_gproximal_wx_leg4 * t166 - minus_gproximal_wy_leg4 * t134
-            - minus_gproximal_wz_leg4 * t177;
+        let t489 = t483 + t482;
+        let t492 = 1.0 / (0.5 * (c_distal_leg4 * t489));
+        let minus_s_proximal_leg4 = t492 * (0.35355339059327373 * ((t59 + t37) * t489));
+        let t497 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t498 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t497 * t498;
+        let c_proximal_leg4 = t492 * (0.25 * (t489 * t489));
+        let t504 = s_distal_leg4 * c_proximal_leg4;
+        let t506 = 0.7071067811865475 * (t504 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t506 * t498;
+        let t511 = 0.7071067811865475 * (t504 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t511 * t498;
+        let t514 = minus_gproximal_wx_leg4 * t153 - minus_gproximal_wy_leg4 * t121
+            - minus_gproximal_wz_leg4 * t164;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t565 = s_distal_leg4 * t537;
-        let t570 = t536 * twist[0] + t545 * twist[1] + t550 * twist[2];
-        let t571 = t565 * t570;
-        let t572 = rate_distal_leg4 * t571;
-        let minus_rate_wrist_leg4 = t571 + 0.7071067811865475 * t531 * twist[0]
-            + 0.7071067811865475 * t519 * twist[1]
-            + 0.7071067811865475 * t518 * twist[2];
-        let t584 = t536 * acceleration[0] + t545 * acceleration[1]
-            + t550 * acceleration[2] + t572 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t537 * t584;
-        let t591 = minus_gproximal_wy_leg4 * t193 - minus_gproximal_wx_leg4 * t188
-            + minus_gproximal_wz_leg4 * t199;
-        let t597 = minus_gproximal_wy_leg4 * t204 - minus_gproximal_wx_leg4 * t202
-            - minus_gproximal_wz_leg4 * t207;
-        let t602 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t606 = 6.936717523440031 * c_proximal_leg1;
-        let t607 = 6.936717523440031 * c_proximal_leg2;
-        let t608 = 6.936717523440031 * c_proximal_leg3;
-        let t609 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t105 * t438;
-        let minus_rate_proximal_leg2 = t33 * t470;
-        let minus_rate_proximal_leg3 = t61 * t502;
-        let minus_rate_proximal_leg4 = t537 * t570;
-        let t626 = t452 + t440;
-        let t628 = t438 * rate_distal_leg1;
-        let t635 = minus_gdistal_wx_leg1 * t166 + c_proximal_leg1 * t134
-            + minus_gdistal_wx_leg1 * t177;
-        let t636 = t438 * t439;
-        let t643 = minus_gdistal_wx_leg1 * t188 + c_proximal_leg1 * t193
-            + minus_gdistal_wx_leg1 * t199;
-        let t649 = minus_gdistal_wx_leg1 * t207
-            - (minus_gdistal_wx_leg1 * t202 + c_proximal_leg1 * t204);
-        let t655 = c_proximal_leg2 * t166 + gdistal_wy_leg2 * t134
-            - gdistal_wy_leg2 * t177;
-        let t656 = t470 * t471;
-        let t658 = t484 + t472;
-        let t660 = t470 * rate_distal_leg2;
-        let t667 = gdistal_wy_leg2 * t199
-            - (c_proximal_leg2 * t188 + gdistal_wy_leg2 * t193);
-        let t674 = c_proximal_leg2 * t202 + gdistal_wy_leg2 * t204
-            + gdistal_wy_leg2 * t207;
-        let t680 = gdistal_wx_leg3 * t177
-            - (gdistal_wx_leg3 * t166 + c_proximal_leg3 * t134);
-        let t681 = t502 * t503;
-        let t687 = gdistal_wx_leg3 * t188 + c_proximal_leg3 * t193
-            - gdistal_wx_leg3 * t199;
-        let t689 = t502 * rate_distal_leg3;
-        let t691 = t516 - t504;
-        let t698 = gdistal_wx_leg3 * t202 + c_proximal_leg3 * t204
-            + gdistal_wx_leg3 * t207;
-        let t701 = t570 * rate_distal_leg4;
-        let t703 = t584 - t572;
-        let t705 = s_distal_leg4 * t701 - c_distal_leg4 * t703;
-        let t711 = c_proximal_leg4 * t166 + minus_gdistal_wy_leg4 * t134
-            + minus_gdistal_wy_leg4 * t177;
-        let t712 = t570 * t571;
-        let t720 = c_proximal_leg4 * t188 + minus_gdistal_wy_leg4 * t193
-            + minus_gdistal_wy_leg4 * t199;
-        let t728 = c_proximal_leg4 * t202 + minus_gdistal_wy_leg4 * t204
-            - minus_gdistal_wy_leg4 * t207;
-        let t731 = t433 * t452;
-        let t738 = t438 * t438;
-        let t739 = t439 * t439;
-        let t740 = t738 - t739;
-        let t745 = t470 * t470;
-        let t746 = t471 * t471;
-        let t747 = t745 - t746;
-        let t749 = t465 * t484;
-        let t759 = t502 * t502;
-        let t760 = t503 * t503;
-        let t761 = t759 - t760;
-        let t764 = t497 * t516;
-        let t773 = t565 * t584;
-        let t779 = c_distal_leg4 * (t701 + t773 + t701) + s_distal_leg4 * (t703 - t572);
-        let t781 = t570 * t570;
-        let t782 = t571 * t571;
-        let t783 = t781 - t782;
+        let t526 = s_distal_leg4 * t498;
+        let t531 = t497 * twist[0] + t506 * twist[1] + t511 * twist[2];
+        let t532 = t526 * t531;
+        let t533 = rate_distal_leg4 * t532;
+        let minus_rate_wrist_leg4 = t532 + 0.7071067811865475 * (t145 + t137);
+        let t539 = t497 * acceleration[0] + t506 * acceleration[1]
+            + t511 * acceleration[2] + t533 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t498 * t539;
+        let t546 = minus_gproximal_wy_leg4 * t180 - minus_gproximal_wx_leg4 * t175
+            + minus_gproximal_wz_leg4 * t186;
+        let t552 = minus_gproximal_wy_leg4 * t191 - minus_gproximal_wx_leg4 * t189
+            - minus_gproximal_wz_leg4 * t194;
+        let t557 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t564 = 6.936717523440031 * c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t93 * t410;
+        let minus_rate_proximal_leg2 = t29 * t441;
+        let minus_rate_proximal_leg3 = t54 * t472;
+        let minus_rate_proximal_leg4 = t498 * t531;
+        let t582 = t412 + t423 + t412;
+        let t588 = minus_gdistal_wx_leg1 * t153 + c_proximal_leg1 * t121
+            + minus_gdistal_wx_leg1 * t164;
+        let t589 = t410 * t411;
+        let t596 = minus_gdistal_wx_leg1 * t175 + c_proximal_leg1 * t180
+            + minus_gdistal_wx_leg1 * t186;
+        let t602 = minus_gdistal_wx_leg1 * t194
+            - (minus_gdistal_wx_leg1 * t189 + c_proximal_leg1 * t191);
+        let t608 = c_proximal_leg2 * t153 + gdistal_wy_leg2 * t121
+            - gdistal_wy_leg2 * t164;
+        let t609 = t441 * t442;
+        let t612 = t443 + t454 + t443;
+        let t618 = gdistal_wy_leg2 * t186
+            - (c_proximal_leg2 * t175 + gdistal_wy_leg2 * t180);
+        let t625 = c_proximal_leg2 * t189 + gdistal_wy_leg2 * t191
+            + gdistal_wy_leg2 * t194;
+        let t631 = gdistal_wx_leg3 * t164
+            - (gdistal_wx_leg3 * t153 + c_proximal_leg3 * t121);
+        let t632 = t472 * t473;
+        let t638 = gdistal_wx_leg3 * t175 + c_proximal_leg3 * t180
+            - gdistal_wx_leg3 * t186;
+        let t641 = t480 - t474 - t474;
+        let t647 = gdistal_wx_leg3 * t189 + c_proximal_leg3 * t191
+            + gdistal_wx_leg3 * t194;
+        let t651 = t539 - t533 - t533;
+        let t652 = c_distal_leg4 * t651;
+        let t658 = c_proximal_leg4 * t153 + minus_gdistal_wy_leg4 * t121
+            + minus_gdistal_wy_leg4 * t164;
+        let t659 = t531 * t532;
+        let t667 = c_proximal_leg4 * t175 + minus_gdistal_wy_leg4 * t180
+            + minus_gdistal_wy_leg4 * t186;
+        let t675 = c_proximal_leg4 * t189 + minus_gdistal_wy_leg4 * t191
+            - minus_gdistal_wy_leg4 * t194;
+        let t678 = t410 * rate_distal_leg1;
+        let t679 = t405 * t423;
+        let t685 = t410 * t410;
+        let t686 = t411 * t411;
+        let t687 = t685 - t686;
+        let t692 = t441 * t441;
+        let t693 = t442 * t442;
+        let t694 = t692 - t693;
+        let t696 = t441 * rate_distal_leg2;
+        let t697 = t436 * t454;
+        let t706 = t472 * t472;
+        let t707 = t473 * t473;
+        let t708 = t706 - t707;
+        let t711 = t472 * rate_distal_leg3;
+        let t712 = t467 * t480;
+        let t720 = t531 * rate_distal_leg4;
+        let t721 = t526 * t539;
+        let t726 = c_distal_leg4 * (t720 + t721 + t720) + s_distal_leg4 * t651;
+        let t728 = t531 * t531;
+        let t729 = t532 * t532;
+        let t730 = t728 - t729;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t438 * rate_wrist_leg1;
-        let t802 = rate_distal_leg1 * rate_distal_leg1;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t410 * rate_wrist_leg1;
+        let t749 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t470 * rate_wrist_leg2;
-        let t820 = rate_distal_leg2 * rate_distal_leg2;
-        let t828 = rate_distal_leg3 * rate_distal_leg3;
+            + t441 * rate_wrist_leg2;
+        let t767 = rate_distal_leg2 * rate_distal_leg2;
+        let t775 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t502 * minus_rate_wrist_leg3;
-        let t843 = rate_distal_leg4 * rate_distal_leg4;
+            - t472 * minus_rate_wrist_leg3;
+        let t790 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t570 * minus_rate_wrist_leg4;
-        let t855 = s_distal_leg4 * (t843 - t781)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t712);
-        let t896 = s_distal_leg4 * (t712 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t782 - t843);
-        let t909 = c_distal_leg1 * t606 - 3.4683587617200153 * t87;
-        let t916 = c_distal_leg2 * t607 - 3.4683587617200153 * t15;
-        let t924 = c_distal_leg3 * t608 + 3.4683587617200153 * t43;
-        let t930 = 6.936717523440031 * t536;
-        let t934 = c_distal_leg4 * t609 + 3.4683587617200153 * t520;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t531 * minus_rate_wrist_leg4;
+        let t802 = s_distal_leg4 * (t790 - t728)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t659);
+        let t843 = s_distal_leg4 * (t659 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t729 - t790);
+        let t854 = t78 * (-6.936717523440031);
+        let t859 = t14 * (-6.936717523440031);
+        let t865 = t34 * 6.936717523440031;
+        let t871 = 6.936717523440031 * t497;
+        let t873 = t482 * 6.936717523440031;
         Ok([
             [
-                t134 * t161 - t166 * t171 + t177 * t182, t134 * t225 - t166 * t231 + t177 * t238,
-                t134 * t264 - t166 * t270 + t177 * t277, t134 * t293 - t166 * t298 + t177 * t304,
-                t134 * t324 - t166 * t330 + t177 * t337, t134 * t352 - t166 * t356 + t177 * t361,
-                t134 * t378 - t166 * t382, t134 * t394 - t166 * t398, t134 * t409 - t166 * t413,
-                -minus_rate_dot_proximal_leg1, 0.0, 0.0, -(t553 * minus_rate_dot_proximal_leg4),
-                -(6.936717523440031 * s_proximal_leg1), 0.0, 0.0, t553 * t602, -t606, 0.0, 0.0,
-                -(t553 * t609), -minus_rate_proximal_leg1, 0.0, 0.0,
-                -(t553 * minus_rate_proximal_leg4),
+                t121 * t148 - t153 * t158 + t164 * t169, t121 * t212 - t153 * t218 + t164 * t225,
+                t121 * t251 - t153 * t257 + t164 * t264, t121 * t280 - t153 * t285 + t164 * t291,
+                t121 * t311 - t153 * t317 + t164 * t324, t121 * t339 - t153 * t343 + t164 * t348,
+                -(t153 * t361 + t121 * t363), -(t153 * t372 + t121 * t374),
+                -(t153 * t383 + t121 * t385), -minus_rate_dot_proximal_leg1, 0.0, 0.0,
+                -(t514 * minus_rate_dot_proximal_leg4), -(6.936717523440031 * s_proximal_leg1), 0.0,
+                0.0, t514 * t557, -(6.936717523440031 * c_proximal_leg1), 0.0, 0.0, -(t514 * t564),
+                -minus_rate_proximal_leg1, 0.0, 0.0, -(t514 * minus_rate_proximal_leg4),
                 -::overact::math::sign(minus_rate_proximal_leg1), 0.0, 0.0,
-                -::overact::math::signed(t553, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t553,
-                -(c_distal_leg1 * t626 + minus_s_distal_leg1 * t628 + t635 * t636), -(t655 * t656),
-                t680 * t681, t553 * t705 - t711 * t712,
-                c_distal_leg1 * (t628 - (t731 - t628))
-                    - minus_s_distal_leg1 * (t440 + t626) + t635 * t740,
-                t655 * t747,
-                t680 * t761,
-                t553 * t779 - t711 * t783,
-                t635 * t452
-                    - (c_distal_leg1 * (t636 + rate_dot_distal_leg1)
-                        + minus_s_distal_leg1 * (t802 - t738)),
-                t655 * t484,
-                t680 * t516,
-                t553 * t855 - t711 * t584,
-                minus_s_distal_leg1 * (t636 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t739 - t802) + t635 * t731,
-                t655 * t749,
-                -(t680 * t764),
-                t553 * t896 + t711 * t773,
-                6.936717523440031 * t118 + t635 * t909,
-                t655 * t916,
-                t680 * t924,
-                t553 * t930 - t711 * t934,
+                -::overact::math::signed(t514, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t514,
+                -(c_distal_leg1 * t582 + t588 * t589), -(t608 * t609), t631 * t632,
+                -(t514 * t652 + t658 * t659),
+                c_distal_leg1 * (t678 - (t679 - t678)) - minus_s_distal_leg1 * t582
+                    + t588 * t687,
+                t608 * t694,
+                t631 * t708,
+                t514 * t726 - t658 * t730,
+                t588 * t423
+                    - (c_distal_leg1 * (t589 + rate_dot_distal_leg1)
+                        + minus_s_distal_leg1 * (t749 - t685)),
+                t608 * t454,
+                t631 * t480,
+                t514 * t802 - t658 * t539,
+                minus_s_distal_leg1 * (t589 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t686 - t749) + t588 * t679,
+                t608 * t697,
+                -(t631 * t712),
+                t514 * t843 + t658 * t721,
+                6.936717523440031 * t105 + t588 * t854,
+                t608 * t859,
+                t631 * t865,
+                t514 * t871 - t658 * t873,
             ],
             [
-                t188 * t171 - t193 * t161 - t199 * t182, t188 * t231 - t193 * t225 - t199 * t238,
-                t188 * t270 - t193 * t264 - t199 * t277, t188 * t298 - t193 * t293 - t199 * t304,
-                t188 * t330 - t193 * t324 - t199 * t337, t188 * t356 - t193 * t352 - t199 * t361,
-                t188 * t382 - t193 * t378, t188 * t398 - t193 * t394, t188 * t413 - t193 * t409,
-                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t591 * minus_rate_dot_proximal_leg4),
-                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t591 * t602, 0.0, -t607, 0.0,
-                -(t591 * t609), 0.0, -minus_rate_proximal_leg2, 0.0,
-                -(t591 * minus_rate_proximal_leg4), 0.0,
+                t175 * t158 - t180 * t148 - t186 * t169, t175 * t218 - t180 * t212 - t186 * t225,
+                t175 * t257 - t180 * t251 - t186 * t264, t175 * t285 - t180 * t280 - t186 * t291,
+                t175 * t317 - t180 * t311 - t186 * t324, t175 * t343 - t180 * t339 - t186 * t348,
+                t175 * t361 + t180 * t363, t175 * t372 + t180 * t374, t175 * t383 + t180 * t385,
+                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t546 * minus_rate_dot_proximal_leg4),
+                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t546 * t557, 0.0,
+                -(6.936717523440031 * c_proximal_leg2), 0.0, -(t546 * t564), 0.0,
+                -minus_rate_proximal_leg2, 0.0, -(t546 * minus_rate_proximal_leg4), 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg2), 0.0,
-                -::overact::math::signed(t591, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t591,
-                t643 * t636, -(c_distal_leg2 * t658 + minus_s_distal_leg2 * t660 + t667 * t656),
-                t687 * t681, t591 * t705 + t720 * t712, -(t643 * t740),
-                c_distal_leg2 * (t660 - (t749 - t660))
-                    - minus_s_distal_leg2 * (t472 + t658) + t667 * t747,
-                t687 * t761,
-                t591 * t779 + t720 * t783,
-                -(t643 * t452),
-                t667 * t484
-                    - (c_distal_leg2 * (t656 + rate_dot_distal_leg2)
-                        + minus_s_distal_leg2 * (t820 - t745)),
-                t687 * t516,
-                t591 * t855 + t720 * t584,
-                -(t643 * t731),
-                minus_s_distal_leg2 * (t656 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t746 - t820) + t667 * t749,
-                -(t687 * t764),
-                t591 * t896 - t720 * t773,
-                -(t643 * t909),
-                t667 * t916 - 6.936717523440031 * t71,
-                t687 * t924,
-                t591 * t930 + t720 * t934,
+                -::overact::math::signed(t546, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t546,
+                t596 * t589, -(c_distal_leg2 * t612 + t618 * t609), t638 * t632,
+                t667 * t659 - t546 * t652, -(t596 * t687),
+                c_distal_leg2 * (t696 - (t697 - t696)) - minus_s_distal_leg2 * t612
+                    + t618 * t694,
+                t638 * t708,
+                t546 * t726 + t667 * t730,
+                -(t596 * t423),
+                t618 * t454
+                    - (c_distal_leg2 * (t609 + rate_dot_distal_leg2)
+                        + minus_s_distal_leg2 * (t767 - t692)),
+                t638 * t480,
+                t546 * t802 + t667 * t539,
+                -(t596 * t679),
+                minus_s_distal_leg2 * (t609 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t693 - t767) + t618 * t697,
+                -(t638 * t712),
+                t546 * t843 - t667 * t721,
+                -(t596 * t854),
+                t618 * t859 - 6.936717523440031 * t63,
+                t638 * t865,
+                t546 * t871 + t667 * t873,
             ],
             [
-                t202 * t171 - t204 * t161 + t207 * t182, t202 * t231 - t204 * t225 + t207 * t238,
-                t202 * t270 - t204 * t264 + t207 * t277, t202 * t298 - t204 * t293 + t207 * t304,
-                t202 * t330 - t204 * t324 + t207 * t337, t202 * t356 - t204 * t352 + t207 * t361,
-                t202 * t382 - t204 * t378, t202 * t398 - t204 * t394, t202 * t413 - t204 * t409,
-                0.0, 0.0, -minus_rate_dot_proximal_leg3, -(t597 * minus_rate_dot_proximal_leg4),
-                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t597 * t602, 0.0, 0.0, -t608,
-                -(t597 * t609), 0.0, 0.0, -minus_rate_proximal_leg3,
-                -(t597 * minus_rate_proximal_leg4), 0.0, 0.0,
+                t189 * t158 - t191 * t148 + t194 * t169, t189 * t218 - t191 * t212 + t194 * t225,
+                t189 * t257 - t191 * t251 + t194 * t264, t189 * t285 - t191 * t280 + t194 * t291,
+                t189 * t317 - t191 * t311 + t194 * t324, t189 * t343 - t191 * t339 + t194 * t348,
+                t189 * t361 + t191 * t363, t189 * t372 + t191 * t374, t189 * t383 + t191 * t385,
+                0.0, 0.0, -minus_rate_dot_proximal_leg3, -(t552 * minus_rate_dot_proximal_leg4),
+                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t552 * t557, 0.0, 0.0,
+                -(6.936717523440031 * c_proximal_leg3), -(t552 * t564), 0.0, 0.0,
+                -minus_rate_proximal_leg3, -(t552 * minus_rate_proximal_leg4), 0.0, 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg3),
-                -::overact::math::signed(t597, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t597,
-                -(t649 * t636), t674 * t656,
-                s_distal_leg3 * t689 - c_distal_leg3 * t691 + t698 * t681,
-                t597 * t705 + t728 * t712, t649 * t740, -(t674 * t747),
-                c_distal_leg3 * (t689 + t764 + t689) + s_distal_leg3 * (t691 - t504)
-                    + t698 * t761,
-                t597 * t779 + t728 * t783,
-                t649 * t452,
-                -(t674 * t484),
-                s_distal_leg3 * (t828 - t759)
-                    - c_distal_leg3 * (rate_dot_distal_leg3 - t681) + t698 * t516,
-                t597 * t855 + t728 * t584,
-                t649 * t731,
-                -(t674 * t749),
-                s_distal_leg3 * (t681 + rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t760 - t828) - t698 * t764,
-                t597 * t896 - t728 * t773,
-                t649 * t909,
-                -(t674 * t916),
-                t698 * t924 - 6.936717523440031 * t83,
-                t597 * t930 + t728 * t934,
+                -::overact::math::signed(t552, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t552,
+                -(t602 * t589), t625 * t609, t647 * t632 - c_distal_leg3 * t641,
+                t675 * t659 - t552 * t652, t602 * t687, -(t625 * t694),
+                c_distal_leg3 * (t711 + t712 + t711) + s_distal_leg3 * t641
+                    + t647 * t708,
+                t552 * t726 + t675 * t730,
+                t602 * t423,
+                -(t625 * t454),
+                s_distal_leg3 * (t775 - t706)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t632) + t647 * t480,
+                t552 * t802 + t675 * t539,
+                t602 * t679,
+                -(t625 * t697),
+                s_distal_leg3 * (t632 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t707 - t775) - t647 * t712,
+                t552 * t843 - t675 * t721,
+                t602 * t854,
+                -(t625 * t859),
+                t647 * t865 - 6.936717523440031 * t75,
+                t552 * t871 + t675 * t873,
             ],
         ])
     }
@@ -7249,7 +7003,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 853 operations (314 additions, 534 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 755 intermediates.
+    /// 830 operations (304 additions, 521 multiplications, 5 divisions), 0 square roots, 8 trigonometric pairs, 6 signs, 732 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7365,314 +7119,309 @@ impl Spherical4Rrr {
         let t151 = t51 * t59;
         let t153 = t43 * t59;
         let t156 = t56 * t59;
-        let t159 = t107 * t97;
-        let t160 = t159 + t78;
-        let t166 = t80 * acceleration[0] + t102 * acceleration[1]
+        let t163 = t80 * acceleration[0] + t102 * acceleration[1]
             + t105 * acceleration[2];
-        let t167 = t98 - t166;
+        let t164 = t163 - t98;
+        let t166 = t107 * t97;
+        let t167 = t78 + t166;
         let t170 = t85 * t85;
         let t171 = t107 * t107;
         let t172 = t170 - t171;
-        let t174 = t80 * t160 - t66 * t167 + t86 * t172;
-        let t180 = t102 * t160 - t71 * t167 + t90 * t172;
-        let t187 = t105 * t160 - t76 * t167 + t95 * t172;
+        let t174 = t66 * t164 + t80 * t167 + t86 * t172;
+        let t180 = t71 * t164 + t102 * t167 + t90 * t172;
+        let t187 = t76 * t164 + t105 * t167 + t95 * t172;
         let t204 = t86 * acceleration[0] + t90 * acceleration[1] + t95 * acceleration[2];
-        let t205 = t108 + t204;
+        let t205 = t204 + t108;
         let t207 = t97 * t97;
         let t208 = t207 - t170;
-        let t211 = t159 - t78;
-        let t213 = t66 * t205 + t80 * t208 - t86 * t211;
-        let t219 = t71 * t205 + t102 * t208 - t90 * t211;
-        let t226 = t76 * t205 + t105 * t208 - t95 * t211;
-        let t240 = t66 * t159;
-        let t242 = t80 * t166 - t240 + t109;
-        let t245 = t71 * t159;
-        let t247 = t102 * t166 - t245 + t119;
-        let t251 = t76 * t159;
-        let t253 = t105 * t166 - t251 + t130;
+        let t211 = t78 - t166;
+        let t213 = t66 * t205 + t80 * t208 + t86 * t211;
+        let t219 = t71 * t205 + t102 * t208 + t90 * t211;
+        let t226 = t76 * t205 + t105 * t208 + t95 * t211;
+        let t240 = t66 * t166;
+        let t242 = t80 * t163 - t240 + t109;
+        let t245 = t71 * t166;
+        let t247 = t102 * t163 - t245 + t119;
+        let t251 = t76 * t166;
+        let t253 = t105 * t163 - t251 + t130;
         let t266 = t171 - t207;
-        let t268 = t108 - t204;
-        let t271 = t98 + t166;
-        let t273 = t66 * t266 - t80 * t268 + t86 * t271;
-        let t279 = t71 * t266 - t102 * t268 + t90 * t271;
-        let t286 = t76 * t266 - t105 * t268 + t95 * t271;
+        let t268 = t204 - t108;
+        let t271 = t163 + t98;
+        let t273 = t66 * t266 + t80 * t268 + t86 * t271;
+        let t279 = t71 * t266 + t102 * t268 + t90 * t271;
+        let t286 = t76 * t266 + t105 * t268 + t95 * t271;
         let t301 = t240 - t99 + t86 * t204;
         let t305 = t245 - t117 + t90 * t204;
         let t310 = t251 - t128 + t95 * t204;
-        let t323 = 9.81 * t105;
-        let t325 = 9.81 * t95;
-        let t327 = t86 * t323 - t80 * t325;
-        let t331 = t90 * t323 - t102 * t325;
-        let t341 = 9.81 * t76;
-        let t343 = t66 * t325 - t86 * t341;
-        let t347 = t71 * t325 - t90 * t341;
-        let t358 = t80 * t341 - t66 * t323;
-        let t362 = t102 * t341 - t71 * t323;
+        let t323 = 9.81 * t71;
+        let t325 = 9.81 * t66;
+        let t334 = 9.81 * t102;
+        let t336 = 9.81 * t80;
+        let t345 = 9.81 * t90;
+        let t347 = 9.81 * t86;
         let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
         let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t382 = c_distal_leg1 * t35;
-        let t387 = t34 * twist[2] - (t40 * twist[0] + t47 * twist[1]);
-        let t388 = t382 * t387;
-        let t389 = rate_distal_leg1 * t388;
-        let t390 = 0.7071067811865476 * c_distal_leg1;
-        let t391 = minus_s_distal_leg1 * t31;
-        let t397 = t391 + t390;
-        let minus_rate_wrist_leg1 = t388 + (t390 - t391) * twist[0]
-            - minus_s_proximal_leg1 * minus_s_distal_leg1 * twist[1] + t397 * twist[2];
-        let t403 = t34 * acceleration[2]
-            - (t40 * acceleration[0] + t47 * acceleration[1]) + t389
+        let t367 = c_distal_leg1 * t35;
+        let t372 = t34 * twist[2] - (t40 * twist[0] + t47 * twist[1]);
+        let t373 = t367 * t372;
+        let t374 = rate_distal_leg1 * t373;
+        let t375 = 0.7071067811865476 * c_distal_leg1;
+        let t376 = minus_s_distal_leg1 * t31;
+        let t382 = t376 + t375;
+        let minus_rate_wrist_leg1 = t373 + (t375 - t376) * twist[0]
+            - minus_s_proximal_leg1 * minus_s_distal_leg1 * twist[1] + t382 * twist[2];
+        let t388 = t34 * acceleration[2]
+            - (t40 * acceleration[0] + t47 * acceleration[1]) + t374
             + rate_distal_leg1 * minus_rate_wrist_leg1;
-        let minus_rate_dot_proximal_leg1 = t35 * t403;
+        let minus_rate_dot_proximal_leg1 = t35 * t388;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t416 = c_distal_leg2 * t8;
-        let t421 = t37 * twist[0] - t18 * twist[1] + t7 * twist[2];
-        let t422 = t416 * t421;
-        let t423 = rate_distal_leg2 * t422;
-        let t426 = 0.7071067811865476 * c_distal_leg2;
-        let t427 = minus_s_distal_leg2 * t4;
-        let t431 = t427 + t426;
-        let minus_rate_wrist_leg2 = t422
+        let t401 = c_distal_leg2 * t8;
+        let t406 = t37 * twist[0] - t18 * twist[1] + t7 * twist[2];
+        let t407 = t401 * t406;
+        let t408 = rate_distal_leg2 * t407;
+        let t411 = 0.7071067811865476 * c_distal_leg2;
+        let t412 = minus_s_distal_leg2 * t4;
+        let t416 = t412 + t411;
+        let minus_rate_wrist_leg2 = t407
             + minus_s_proximal_leg2 * minus_s_distal_leg2 * twist[0]
-            + (t426 - t427) * twist[1] + t431 * twist[2];
-        let t437 = t37 * acceleration[0] - t18 * acceleration[1] + t7 * acceleration[2]
-            + t423 + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let minus_rate_dot_proximal_leg2 = t8 * t437;
+            + (t411 - t412) * twist[1] + t416 * twist[2];
+        let t422 = t37 * acceleration[0] - t18 * acceleration[1] + t7 * acceleration[2]
+            + t408 + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let minus_rate_dot_proximal_leg2 = t8 * t422;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t450 = c_distal_leg3 * t15;
-        let t455 = t45 * twist[0] + t14 * twist[1] + t23 * twist[2];
-        let t456 = t450 * t455;
-        let t457 = rate_distal_leg3 * t456;
-        let t458 = minus_s_distal_leg3 * t20;
-        let t459 = 0.7071067811865476 * c_distal_leg3;
-        let t465 = t458 + t459;
-        let minus_rate_wrist_leg3 = t456 + (t458 - t459) * twist[0]
-            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t465 * twist[2];
-        let t471 = t45 * acceleration[0] + t14 * acceleration[1] + t23 * acceleration[2]
-            + t457 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t15 * t471;
-        let t477 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t478 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t477 * t478;
-        let t481 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t482 = c_distal_leg4 * t481;
-        let t483 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t484 = t482 + t483;
-        let minus_gproximal_wy_leg4 = t484 * t478;
-        let t488 = t482 - t483;
-        let minus_gproximal_wz_leg4 = t488 * t478;
-        let t491 = gproximal_wx_leg4 * t60 + minus_gproximal_wy_leg4 * t115
+        let t435 = c_distal_leg3 * t15;
+        let t440 = t45 * twist[0] + t14 * twist[1] + t23 * twist[2];
+        let t441 = t435 * t440;
+        let t442 = rate_distal_leg3 * t441;
+        let t443 = minus_s_distal_leg3 * t20;
+        let t444 = 0.7071067811865476 * c_distal_leg3;
+        let t450 = t443 + t444;
+        let minus_rate_wrist_leg3 = t441 + (t443 - t444) * twist[0]
+            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t450 * twist[2];
+        let t456 = t45 * acceleration[0] + t14 * acceleration[1] + t23 * acceleration[2]
+            + t442 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t15 * t456;
+        let t462 = minus_s_proximal_leg4 * c_distal_leg4;
+        let t463 = 1.0 / minus_s_distal_leg4;
+        let gproximal_wx_leg4 = t462 * t463;
+        let t466 = 0.7071067811865476 * minus_c_proximal_leg4;
+        let t467 = c_distal_leg4 * t466;
+        let t468 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t469 = t467 + t468;
+        let minus_gproximal_wy_leg4 = t469 * t463;
+        let t473 = t467 - t468;
+        let minus_gproximal_wz_leg4 = t473 * t463;
+        let t476 = gproximal_wx_leg4 * t60 + minus_gproximal_wy_leg4 * t115
             + minus_gproximal_wz_leg4 * t126;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t503 = c_distal_leg4 * t478;
-        let t508 = t484 * twist[1] - t477 * twist[0] + t488 * twist[2];
-        let t509 = t503 * t508;
-        let t510 = rate_distal_leg4 * t509;
-        let t511 = minus_s_distal_leg4 * t481;
-        let t512 = 0.7071067811865476 * c_distal_leg4;
-        let t518 = t511 + t512;
-        let minus_rate_wrist_leg4 = t509 + (t511 - t512) * twist[1]
-            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t518 * twist[2];
-        let t524 = t484 * acceleration[1] - t477 * acceleration[0]
-            + t488 * acceleration[2] + t510 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t478 * t524;
-        let t531 = minus_gproximal_wz_leg4 * t148
+        let t488 = c_distal_leg4 * t463;
+        let t493 = t469 * twist[1] - t462 * twist[0] + t473 * twist[2];
+        let t494 = t488 * t493;
+        let t495 = rate_distal_leg4 * t494;
+        let t496 = minus_s_distal_leg4 * t466;
+        let t497 = 0.7071067811865476 * c_distal_leg4;
+        let t503 = t496 + t497;
+        let minus_rate_wrist_leg4 = t494 + (t496 - t497) * twist[1]
+            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t503 * twist[2];
+        let t509 = t469 * acceleration[1] - t462 * acceleration[0]
+            + t473 * acceleration[2] + t495 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t463 * t509;
+        let t516 = minus_gproximal_wz_leg4 * t148
             - (gproximal_wx_leg4 * t142 + minus_gproximal_wy_leg4 * t137);
-        let t537 = gproximal_wx_leg4 * t151 + minus_gproximal_wy_leg4 * t153
+        let t522 = gproximal_wx_leg4 * t151 + minus_gproximal_wy_leg4 * t153
             + minus_gproximal_wz_leg4 * t156;
-        let t539 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t540 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t541 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t542 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t549 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t35 * t387;
-        let minus_rate_proximal_leg2 = t8 * t421;
-        let minus_rate_proximal_leg3 = t15 * t455;
-        let minus_rate_proximal_leg4 = t478 * t508;
-        let t566 = t387 * rate_distal_leg1;
-        let t568 = t403 - t389;
-        let t575 = minus_gdistal_wx_leg1 * t60 + minus_c_proximal_leg1 * t115
+        let t524 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t525 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t526 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t527 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t534 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t35 * t372;
+        let minus_rate_proximal_leg2 = t8 * t406;
+        let minus_rate_proximal_leg3 = t15 * t440;
+        let minus_rate_proximal_leg4 = t463 * t493;
+        let t552 = t388 - t374 - t374;
+        let t558 = minus_gdistal_wx_leg1 * t60 + minus_c_proximal_leg1 * t115
             + minus_gdistal_wx_leg1 * t126;
-        let t576 = t387 * t388;
-        let t583 = minus_gdistal_wx_leg1 * t142 + minus_c_proximal_leg1 * t137
+        let t559 = t372 * t373;
+        let t566 = minus_gdistal_wx_leg1 * t142 + minus_c_proximal_leg1 * t137
             - minus_gdistal_wx_leg1 * t148;
-        let t589 = minus_gdistal_wx_leg1 * t151 + minus_c_proximal_leg1 * t153
+        let t572 = minus_gdistal_wx_leg1 * t151 + minus_c_proximal_leg1 * t153
             + minus_gdistal_wx_leg1 * t156;
-        let t595 = minus_gdistal_wy_leg2 * t115 - minus_c_proximal_leg2 * t60
+        let t578 = minus_gdistal_wy_leg2 * t115 - minus_c_proximal_leg2 * t60
             - minus_gdistal_wy_leg2 * t126;
-        let t596 = t421 * t422;
-        let t598 = t421 * rate_distal_leg2;
-        let t600 = t437 - t423;
-        let t607 = minus_c_proximal_leg2 * t142 - minus_gdistal_wy_leg2 * t137
+        let t579 = t406 * t407;
+        let t582 = t422 - t408 - t408;
+        let t588 = minus_c_proximal_leg2 * t142 - minus_gdistal_wy_leg2 * t137
             - minus_gdistal_wy_leg2 * t148;
-        let t614 = minus_gdistal_wy_leg2 * t153 - minus_c_proximal_leg2 * t151
+        let t595 = minus_gdistal_wy_leg2 * t153 - minus_c_proximal_leg2 * t151
             - minus_gdistal_wy_leg2 * t156;
-        let t620 = gdistal_wx_leg3 * t60 + minus_c_proximal_leg3 * t115
+        let t601 = gdistal_wx_leg3 * t60 + minus_c_proximal_leg3 * t115
             - gdistal_wx_leg3 * t126;
-        let t621 = t455 * t456;
-        let t627 = gdistal_wx_leg3 * t142 + minus_c_proximal_leg3 * t137
+        let t602 = t440 * t441;
+        let t608 = gdistal_wx_leg3 * t142 + minus_c_proximal_leg3 * t137
             + gdistal_wx_leg3 * t148;
-        let t629 = t455 * rate_distal_leg3;
-        let t631 = t471 - t457;
-        let t638 = gdistal_wx_leg3 * t151 + minus_c_proximal_leg3 * t153
+        let t611 = t456 - t442 - t442;
+        let t617 = gdistal_wx_leg3 * t151 + minus_c_proximal_leg3 * t153
             - gdistal_wx_leg3 * t156;
-        let t641 = t508 * rate_distal_leg4;
-        let t643 = t524 - t510;
-        let t645 = c_distal_leg4 * t641 - minus_s_distal_leg4 * t643;
-        let t651 = minus_c_proximal_leg4 * t60 - gdistal_wy_leg4 * t115
+        let t621 = t509 - t495 - t495;
+        let t622 = minus_s_distal_leg4 * t621;
+        let t628 = minus_c_proximal_leg4 * t60 - gdistal_wy_leg4 * t115
             - gdistal_wy_leg4 * t126;
-        let t652 = t508 * t509;
-        let t660 = gdistal_wy_leg4 * t137 - minus_c_proximal_leg4 * t142
+        let t629 = t493 * t494;
+        let t637 = gdistal_wy_leg4 * t137 - minus_c_proximal_leg4 * t142
             - gdistal_wy_leg4 * t148;
-        let t668 = minus_c_proximal_leg4 * t151 - gdistal_wy_leg4 * t153
+        let t645 = minus_c_proximal_leg4 * t151 - gdistal_wy_leg4 * t153
             - gdistal_wy_leg4 * t156;
-        let t671 = t382 * t403;
-        let t678 = t387 * t387;
-        let t679 = t388 * t388;
-        let t680 = t678 - t679;
-        let t685 = t421 * t421;
-        let t686 = t422 * t422;
-        let t687 = t685 - t686;
-        let t689 = t416 * t437;
-        let t699 = t455 * t455;
-        let t700 = t456 * t456;
-        let t701 = t699 - t700;
-        let t704 = t450 * t471;
-        let t713 = t503 * t524;
-        let t719 = minus_s_distal_leg4 * (t641 + t713 + t641)
-            + c_distal_leg4 * (t643 - t510);
-        let t721 = t508 * t508;
-        let t722 = t509 * t509;
-        let t723 = t721 - t722;
-        let t732 = rate_distal_leg1 * rate_distal_leg1;
+        let t648 = t372 * rate_distal_leg1;
+        let t649 = t367 * t388;
+        let t655 = t372 * t372;
+        let t656 = t373 * t373;
+        let t657 = t655 - t656;
+        let t662 = t406 * t406;
+        let t663 = t407 * t407;
+        let t664 = t662 - t663;
+        let t666 = t406 * rate_distal_leg2;
+        let t667 = t401 * t422;
+        let t676 = t440 * t440;
+        let t677 = t441 * t441;
+        let t678 = t676 - t677;
+        let t681 = t440 * rate_distal_leg3;
+        let t682 = t435 * t456;
+        let t690 = t493 * rate_distal_leg4;
+        let t691 = t488 * t509;
+        let t696 = minus_s_distal_leg4 * (t690 + t691 + t690) + c_distal_leg4 * t621;
+        let t698 = t493 * t493;
+        let t699 = t494 * t494;
+        let t700 = t698 - t699;
+        let t709 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] - t387 * minus_rate_wrist_leg1;
-        let t750 = rate_distal_leg2 * rate_distal_leg2;
+            + minus_gdistal_wx_leg1 * acceleration[2] - t372 * minus_rate_wrist_leg1;
+        let t727 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t421 * minus_rate_wrist_leg2;
-        let t768 = rate_distal_leg3 * rate_distal_leg3;
+            - t406 * minus_rate_wrist_leg2;
+        let t745 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t455 * minus_rate_wrist_leg3;
-        let t783 = rate_distal_leg4 * rate_distal_leg4;
+            - t440 * minus_rate_wrist_leg3;
+        let t760 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t508 * minus_rate_wrist_leg4;
-        let t795 = c_distal_leg4 * (t783 - t721)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t652);
-        let t836 = c_distal_leg4 * (t652 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t722 - t783);
-        let t847 = 9.81 * t397;
-        let t852 = 9.81 * t431;
-        let t858 = 9.81 * t465;
-        let t864 = 9.81 * t518;
-        let t866 = c_distal_leg4 * t542;
+            - t493 * minus_rate_wrist_leg4;
+        let t772 = c_distal_leg4 * (t760 - t698)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t629);
+        let t813 = c_distal_leg4 * (t629 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t699 - t760);
+        let t824 = 9.81 * t382;
+        let t829 = 9.81 * t416;
+        let t835 = 9.81 * t450;
+        let t841 = 9.81 * t503;
+        let t843 = c_distal_leg4 * t527;
         Ok([
             [
                 t60 * t110 - t115 * t120 - t126 * t131, t60 * t174 - t115 * t180 - t126 * t187,
                 t60 * t213 - t115 * t219 - t126 * t226, t60 * t242 - t115 * t247 - t126 * t253,
                 t60 * t273 - t115 * t279 - t126 * t286, t60 * t301 - t115 * t305 - t126 * t310,
-                t60 * t327 - t115 * t331, t60 * t343 - t115 * t347, t60 * t358 - t115 * t362,
-                -minus_rate_dot_proximal_leg1, 0.0, 0.0, -(t491 * minus_rate_dot_proximal_leg4),
-                -t539, 0.0, 0.0, -(t491 * t542), -(6.9367175234400325 * minus_c_proximal_leg1), 0.0,
-                0.0, -(t491 * t549), -minus_rate_proximal_leg1, 0.0, 0.0,
-                -(t491 * minus_rate_proximal_leg4),
+                t60 * t323 + t115 * t325, t60 * t334 + t115 * t336, t60 * t345 + t115 * t347,
+                -minus_rate_dot_proximal_leg1, 0.0, 0.0, -(t476 * minus_rate_dot_proximal_leg4),
+                -t524, 0.0, 0.0, -(t476 * t527), -(6.9367175234400325 * minus_c_proximal_leg1), 0.0,
+                0.0, -(t476 * t534), -minus_rate_proximal_leg1, 0.0, 0.0,
+                -(t476 * minus_rate_proximal_leg4),
                 -::overact::math::sign(minus_rate_proximal_leg1), 0.0, 0.0,
-                -::overact::math::signed(t491, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t491,
-                c_distal_leg1 * t566 - minus_s_distal_leg1 * t568 - t575 * t576, t595 * t596,
-                t620 * t621, t491 * t645 + t651 * t652,
-                minus_s_distal_leg1 * (t566 + t671 + t566)
-                    + c_distal_leg1 * (t568 - t389) - t575 * t680,
-                t595 * t687,
-                t620 * t701,
-                t491 * t719 + t651 * t723,
-                c_distal_leg1 * (t732 - t678)
-                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t576) - t575 * t403,
-                t595 * t437,
-                t620 * t471,
-                t491 * t795 + t651 * t524,
-                c_distal_leg1 * (t576 + rate_dot_distal_leg1)
-                    - minus_s_distal_leg1 * (t679 - t732) + t575 * t671,
-                -(t595 * t689),
-                -(t620 * t704),
-                t491 * t836 - t651 * t713,
-                -(c_distal_leg1 * t539 + t575 * t847),
-                t595 * t852,
-                t620 * t858,
-                t651 * t864 - t491 * t866,
+                -::overact::math::signed(t476, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t476,
+                -(minus_s_distal_leg1 * t552 + t558 * t559), t578 * t579, t601 * t602,
+                t628 * t629 - t476 * t622,
+                minus_s_distal_leg1 * (t648 + t649 + t648) + c_distal_leg1 * t552
+                    - t558 * t657,
+                t578 * t664,
+                t601 * t678,
+                t476 * t696 + t628 * t700,
+                c_distal_leg1 * (t709 - t655)
+                    - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t559) - t558 * t388,
+                t578 * t422,
+                t601 * t456,
+                t476 * t772 + t628 * t509,
+                c_distal_leg1 * (t559 + rate_dot_distal_leg1)
+                    - minus_s_distal_leg1 * (t656 - t709) + t558 * t649,
+                -(t578 * t667),
+                -(t601 * t682),
+                t476 * t813 - t628 * t691,
+                -(c_distal_leg1 * t524 + t558 * t824),
+                t578 * t829,
+                t601 * t835,
+                t628 * t841 - t476 * t843,
             ],
             [
                 t137 * t120 - t142 * t110 - t148 * t131, t137 * t180 - t142 * t174 - t148 * t187,
                 t137 * t219 - t142 * t213 - t148 * t226, t137 * t247 - t142 * t242 - t148 * t253,
                 t137 * t279 - t142 * t273 - t148 * t286, t137 * t305 - t142 * t301 - t148 * t310,
-                t137 * t331 - t142 * t327, t137 * t347 - t142 * t343, t137 * t362 - t142 * t358,
-                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t531 * minus_rate_dot_proximal_leg4),
-                0.0, -t540, 0.0, -(t531 * t542), 0.0, -(6.9367175234400325 * minus_c_proximal_leg2),
-                0.0, -(t531 * t549), 0.0, -minus_rate_proximal_leg2, 0.0,
-                -(t531 * minus_rate_proximal_leg4), 0.0,
+                -(t142 * t323 + t137 * t325), -(t142 * t334 + t137 * t336),
+                -(t142 * t345 + t137 * t347), 0.0, -minus_rate_dot_proximal_leg2, 0.0,
+                -(t516 * minus_rate_dot_proximal_leg4), 0.0, -t525, 0.0, -(t516 * t527), 0.0,
+                -(6.9367175234400325 * minus_c_proximal_leg2), 0.0, -(t516 * t534), 0.0,
+                -minus_rate_proximal_leg2, 0.0, -(t516 * minus_rate_proximal_leg4), 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg2), 0.0,
-                -::overact::math::signed(t531, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t531,
-                t583 * t576, c_distal_leg2 * t598 - minus_s_distal_leg2 * t600 + t607 * t596,
-                -(t627 * t621), t531 * t645 + t660 * t652, t583 * t680,
-                minus_s_distal_leg2 * (t598 + t689 + t598)
-                    + c_distal_leg2 * (t600 - t423) + t607 * t687,
-                -(t627 * t701),
-                t531 * t719 + t660 * t723,
-                t583 * t403,
-                c_distal_leg2 * (t750 - t685)
-                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t596) + t607 * t437,
-                -(t627 * t471),
-                t531 * t795 + t660 * t524,
-                -(t583 * t671),
-                c_distal_leg2 * (t596 + rate_dot_distal_leg2)
-                    - minus_s_distal_leg2 * (t686 - t750) - t607 * t689,
-                t627 * t704,
-                t531 * t836 - t660 * t713,
-                t583 * t847,
-                t607 * t852 - c_distal_leg2 * t540,
-                -(t627 * t858),
-                t660 * t864 - t531 * t866,
+                -::overact::math::signed(t516, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t516,
+                t566 * t559, t588 * t579 - minus_s_distal_leg2 * t582, -(t608 * t602),
+                t637 * t629 - t516 * t622, t566 * t657,
+                minus_s_distal_leg2 * (t666 + t667 + t666) + c_distal_leg2 * t582
+                    + t588 * t664,
+                -(t608 * t678),
+                t516 * t696 + t637 * t700,
+                t566 * t388,
+                c_distal_leg2 * (t727 - t662)
+                    - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t579) + t588 * t422,
+                -(t608 * t456),
+                t516 * t772 + t637 * t509,
+                -(t566 * t649),
+                c_distal_leg2 * (t579 + rate_dot_distal_leg2)
+                    - minus_s_distal_leg2 * (t663 - t727) - t588 * t667,
+                t608 * t682,
+                t516 * t813 - t637 * t691,
+                t566 * t824,
+                t588 * t829 - c_distal_leg2 * t525,
+                -(t608 * t835),
+                t637 * t841 - t516 * t843,
             ],
             [
                 t151 * t110 - t153 * t120 - t156 * t131, t151 * t174 - t153 * t180 - t156 * t187,
                 t151 * t213 - t153 * t219 - t156 * t226, t151 * t242 - t153 * t247 - t156 * t253,
                 t151 * t273 - t153 * t279 - t156 * t286, t151 * t301 - t153 * t305 - t156 * t310,
-                t151 * t327 - t153 * t331, t151 * t343 - t153 * t347, t151 * t358 - t153 * t362,
-                0.0, 0.0, -minus_rate_dot_proximal_leg3, -(t537 * minus_rate_dot_proximal_leg4),
-                0.0, 0.0, -t541, -(t537 * t542), 0.0, 0.0,
-                -(6.9367175234400325 * minus_c_proximal_leg3), -(t537 * t549), 0.0, 0.0,
-                -minus_rate_proximal_leg3, -(t537 * minus_rate_proximal_leg4), 0.0, 0.0,
+                t151 * t323 + t153 * t325, t151 * t334 + t153 * t336, t151 * t345 + t153 * t347,
+                0.0, 0.0, -minus_rate_dot_proximal_leg3, -(t522 * minus_rate_dot_proximal_leg4),
+                0.0, 0.0, -t526, -(t522 * t527), 0.0, 0.0,
+                -(6.9367175234400325 * minus_c_proximal_leg3), -(t522 * t534), 0.0, 0.0,
+                -minus_rate_proximal_leg3, -(t522 * minus_rate_proximal_leg4), 0.0, 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg3),
-                -::overact::math::signed(t537, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t537,
-                -(t589 * t576), t614 * t596,
-                c_distal_leg3 * t629 - minus_s_distal_leg3 * t631 + t638 * t621,
-                t537 * t645 + t668 * t652, -(t589 * t680), t614 * t687,
-                minus_s_distal_leg3 * (t629 + t704 + t629)
-                    + c_distal_leg3 * (t631 - t457) + t638 * t701,
-                t537 * t719 + t668 * t723,
-                -(t589 * t403),
-                t614 * t437,
-                c_distal_leg3 * (t768 - t699)
-                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t621) + t638 * t471,
-                t537 * t795 + t668 * t524,
-                t589 * t671,
-                -(t614 * t689),
-                c_distal_leg3 * (t621 + rate_dot_distal_leg3)
-                    - minus_s_distal_leg3 * (t700 - t768) - t638 * t704,
-                t537 * t836 - t668 * t713,
-                -(t589 * t847),
-                t614 * t852,
-                t638 * t858 - c_distal_leg3 * t541,
-                t668 * t864 - t537 * t866,
+                -::overact::math::signed(t522, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t522,
+                -(t572 * t559), t595 * t579, t617 * t602 - minus_s_distal_leg3 * t611,
+                t645 * t629 - t522 * t622, -(t572 * t657), t595 * t664,
+                minus_s_distal_leg3 * (t681 + t682 + t681) + c_distal_leg3 * t611
+                    + t617 * t678,
+                t522 * t696 + t645 * t700,
+                -(t572 * t388),
+                t595 * t422,
+                c_distal_leg3 * (t745 - t676)
+                    - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t602) + t617 * t456,
+                t522 * t772 + t645 * t509,
+                t572 * t649,
+                -(t595 * t667),
+                c_distal_leg3 * (t602 + rate_dot_distal_leg3)
+                    - minus_s_distal_leg3 * (t677 - t745) - t617 * t682,
+                t522 * t813 - t645 * t691,
+                -(t572 * t824),
+                t595 * t829,
+                t617 * t835 - c_distal_leg3 * t526,
+                t645 * t841 - t522 * t843,
             ],
         ])
     }
@@ -7687,7 +7436,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1069 operations (394 additions, 663 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 959 intermediates.
+    /// 1004 operations (374 additions, 618 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 894 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7712,493 +7461,476 @@ impl Spherical4Rrr {
         let t12 = pose[2] * t6;
         let t13 = t2 - t12;
         let t14 = t11 - t13;
-        let t15 = t10 + t14;
-        let minus_s_distal_leg2 = 0.5 * t15;
-        let t19 = 1.0 - 0.25 * (t15 * t15);
-        ::overact::guard::reach(t19, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t19);
+        let minus_s_distal_leg2 = 0.5 * (t10 + t14);
+        let t17 = t10 - t14;
+        let t21 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t21, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t21);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg2 - t14 * c_distal_leg2));
-        let t26 = t10 - t14;
-        let c_proximal_leg2 = t25 * (0.25 * (t26 * t26));
-        let t30 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t32 = 0.7071067811865475 * (t30 + c_distal_leg2);
-        let t33 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t32 * t33;
-        let t35 = pose[3] * t0;
-        let t36 = pose[0] * t6;
-        let t37 = t35 - t36;
-        let t38 = t37 + t13;
-        let t40 = 1.0 - t12 - t4;
-        let t41 = t35 + t36;
-        let t42 = t40 + t41;
-        let t43 = t38 - t42;
-        let s_distal_leg3 = 0.5 * t43;
-        let t47 = 1.0 - 0.25 * (t43 * t43);
-        ::overact::guard::reach(t47, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t47);
+        let c_proximal_leg2 = 0.25 * (t17 * t17) / (0.5 * (c_distal_leg2 * t17));
+        let t26 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t28 = 0.7071067811865475 * (t26 + c_distal_leg2);
+        let t29 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t28 * t29;
+        let t31 = pose[3] * t0;
+        let t32 = pose[0] * t6;
+        let t33 = t31 - t32;
+        let t34 = t33 + t13;
+        let t36 = 1.0 - t12 - t4;
+        let t37 = t31 + t32;
+        let t38 = t36 + t37;
+        let s_distal_leg3 = 0.5 * (t34 - t38);
+        let t42 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t42, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t42);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t53 = 1.0 / (0.5 * (t42 * c_distal_leg3 + t38 * c_distal_leg3));
-        let t54 = t42 + t38;
-        let c_proximal_leg3 = t53 * (0.25 * (t54 * t54));
-        let t58 = s_distal_leg3 * c_proximal_leg3;
-        let t60 = 0.7071067811865475 * (t58 + c_distal_leg3);
-        let t61 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = t60 * t61;
-        let t64 = pose[2] * t0;
-        let t65 = pose[0] * t3;
-        let t66 = t64 - t65;
-        let t67 = t66 - t41;
-        let minus_s_proximal_leg2 = t25 * (0.35355339059327373 * (t67 * t26));
-        let t71 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t71 * t33;
-        let t74 = 0.7071067811865475 * (t58 - c_distal_leg3);
-        let minus_gproximal_wz_leg3 = t74 * t61;
-        let t78 = t64 + t65;
-        let t79 = t78 + t9;
-        let s_proximal_leg3 = t53 * (0.35355339059327373 * (t79 * t54));
-        let t83 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t83 * t61;
-        let t85 = t40 - t41;
-        let t86 = t37 - t13;
-        let t87 = t85 + t86;
-        let minus_s_distal_leg1 = 0.5 * t87;
-        let t91 = 1.0 - 0.25 * (t87 * t87);
-        ::overact::guard::reach(t91, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t91);
+        let t44 = t38 + t34;
+        let t47 = 1.0 / (0.5 * (c_distal_leg3 * t44));
+        let c_proximal_leg3 = t47 * (0.25 * (t44 * t44));
+        let t51 = s_distal_leg3 * c_proximal_leg3;
+        let t53 = 0.7071067811865475 * (t51 + c_distal_leg3);
+        let t54 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = t53 * t54;
+        let t57 = pose[2] * t0;
+        let t58 = pose[0] * t3;
+        let t59 = t57 - t58;
+        let t61 = 0.7071067811865475 * (t59 - t37);
+        let minus_s_proximal_leg2 = t29 * t61;
+        let t63 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t63 * t29;
+        let t66 = 0.7071067811865475 * (t51 - c_distal_leg3);
+        let minus_gproximal_wz_leg3 = t66 * t54;
+        let t70 = t57 + t58;
+        let s_proximal_leg3 = t47 * (0.35355339059327373 * ((t70 + t9) * t44));
+        let t75 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t75 * t54;
+        let t77 = t36 - t37;
+        let t78 = t33 - t13;
+        let minus_s_distal_leg1 = 0.5 * (t77 + t78);
+        let t81 = t77 - t78;
+        let t85 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t85, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t85);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t97 = 1.0 / (0.5 * (t85 * c_distal_leg1 - t86 * c_distal_leg1));
-        let t98 = t85 - t86;
-        let c_proximal_leg1 = t97 * (0.25 * (t98 * t98));
-        let t102 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t104 = 0.7071067811865475 * (t102 - c_distal_leg1);
-        let t105 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t104 * t105;
-        let t109 = 0.7071067811865475 * (t102 + c_distal_leg1);
-        let gproximal_wz_leg1 = t109 * t105;
-        let t112 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
+        let c_proximal_leg1 = 0.25 * (t81 * t81) / (0.5 * (c_distal_leg1 * t81));
+        let t90 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t92 = 0.7071067811865475 * (t90 - c_distal_leg1);
+        let t93 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = t92 * t93;
+        let t97 = 0.7071067811865475 * (t90 + c_distal_leg1);
+        let gproximal_wz_leg1 = t97 * t93;
+        let t100 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wx_leg2;
-        let t114 = t78 - t9;
-        let s_proximal_leg1 = t97 * (0.35355339059327373 * (t114 * t98));
-        let t118 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t118 * t105;
-        let t122 = 0.7071067811865475 * (t30 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t122 * t33;
-        let t125 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
+        let t103 = 0.7071067811865475 * (t70 - t9);
+        let s_proximal_leg1 = t93 * t103;
+        let t105 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t105 * t93;
+        let t109 = 0.7071067811865475 * (t26 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t109 * t29;
+        let t112 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wy_leg2;
-        let t130 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t117 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg2;
-        let t132 = minus_gproximal_wy_leg3 * t112 - minus_gproximal_wx_leg3 * t125
-            - minus_gproximal_wz_leg3 * t130;
-        ::overact::guard::platform(t132, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t132, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t132, 0.7071067811865474, "kept actuators")?;
-        let t133 = 1.0 / t132;
-        let t134 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t133;
-        let t140 = t11 + t13;
-        let t141 = t5 + t9;
-        let t142 = t140 - t141;
-        let s_distal_leg4 = 0.5 * t142;
-        let t146 = 1.0 - 0.25 * (t142 * t142);
-        ::overact::guard::reach(t146, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t146);
+        let t119 = minus_gproximal_wy_leg3 * t100 - minus_gproximal_wx_leg3 * t112
+            - minus_gproximal_wz_leg3 * t117;
+        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
+        let t120 = 1.0 / t119;
+        let t121 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t120;
+        let t127 = t11 + t13;
+        let t128 = t5 + t9;
+        let s_distal_leg4 = 0.5 * (t127 - t128);
+        let t132 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t132, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t132);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t152 = 1.0 / (0.5 * (t141 * c_distal_leg4 + t140 * c_distal_leg4));
-        let t153 = t141 + t140;
-        let c_proximal_leg4 = t152 * (0.25 * (t153 * t153));
-        let t157 = s_distal_leg4 * c_proximal_leg4;
-        let t159 = 0.7071067811865475 * (t157 + c_distal_leg4);
-        let t160 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wy_leg4 = t159 * t160;
-        let t169 = t66 + t41;
-        let minus_s_proximal_leg4 = t152 * (0.35355339059327373 * (t169 * t153));
-        let t173 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t173 * t160;
-        let t176 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let t134 = t128 + t127;
+        let t137 = 1.0 / (0.5 * (c_distal_leg4 * t134));
+        let c_proximal_leg4 = t137 * (0.25 * (t134 * t134));
+        let t141 = s_distal_leg4 * c_proximal_leg4;
+        let t143 = 0.7071067811865475 * (t141 + c_distal_leg4);
+        let t144 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wy_leg4 = t143 * t144;
+        let minus_s_proximal_leg4 = t137 * (0.35355339059327373 * ((t59 + t37) * t134));
+        let t157 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t157 * t144;
+        let t160 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t183 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t167 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t183, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t183, 0.9999999999999998, "actuators")?;
-        let t184 = 1.0 / t183;
-        let t185 = t176 * t184;
-        let t187 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t167, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t167, 0.9999999999999998, "actuators")?;
+        let t168 = 1.0 / t167;
+        let t169 = t160 * t168;
+        let t171 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t176 * t185;
-        ::overact::guard::platform(t187, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t187, 0.9999999999999998, "actuators")?;
-        let t188 = 1.0 / t187;
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t160 * t169;
+        ::overact::guard::platform(t171, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t171, 0.9999999999999998, "actuators")?;
+        let t172 = 1.0 / t171;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t196 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t180 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t206 = t196 * t185
+        let t190 = t180 * t169
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t214 = 0.7071067811865475 * (t157 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t214 * t160;
-        let t224 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t198 = 0.7071067811865475 * (t141 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t198 * t144;
+        let t208 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t225 = t224 * t184;
-        let t227 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t209 = t208 * t168;
+        let t211 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t176 * t225;
-        let t228 = t227 * t188;
-        let t239 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t160 * t209;
+        let t212 = t211 * t172;
+        let t223 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t224 * t225
-            - t227 * t228;
-        ::overact::guard::platform(t239, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t239, 1.9999999999999996, "actuators")?;
-        let t240 = 1.0 / t239;
-        let t251 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t208 * t209
+            - t211 * t212;
+        ::overact::guard::platform(t223, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t223, 1.9999999999999996, "actuators")?;
+        let t224 = 1.0 / t223;
+        let t235 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t196 * t225
-            - t228 * t206;
-        let t252 = t240 * t251;
-        let t254 = t188 * t206 - t228 * t252;
-        let t258 = t196 * t184 + t185 * t254 + t225 * t252;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t258 + c_proximal_leg1 * t254
-            + minus_gdistal_wx_leg1 * t252;
-        let t269 = t118 * t254 - t104 * t258 - t109 * t252;
-        let t270 = minus_s_distal_leg1 * t105 * t269;
-        let t271 = rate_distal_leg1 * t270;
-        let minus_rate_wrist_leg1 = 0.7071067811865475 * t85 * t258
-            - 0.7071067811865475 * t114 * t254 - 0.7071067811865475 * t86 * t252 - t270;
-        let t282 = t271 - rate_distal_leg1 * minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t105 * t282;
-        let t284 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t180 * t209
+            - t212 * t190;
+        let t236 = t224 * t235;
+        let t238 = t172 * t190 - t212 * t236;
+        let t242 = t180 * t168 + t169 * t238 + t209 * t236;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t242 + c_proximal_leg1 * t238
+            + minus_gdistal_wx_leg1 * t236;
+        let t252 = t105 * t238 - t92 * t242 - t97 * t236;
+        let minus_rate_proximal_leg1 = t93 * t252;
+        let t254 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t255 = rate_distal_leg1 * t254;
+        let minus_rate_wrist_leg1 = 0.7071067811865475 * t77 * t242 - t103 * t238
+            - 0.7071067811865475 * t78 * t236 - t254;
+        let t265 = t255 - rate_distal_leg1 * minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t93 * t265;
+        let t267 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t258 + gdistal_wy_leg2 * t254
-            - gdistal_wy_leg2 * t252;
-        let t297 = t122 * t254 - t71 * t258 - t32 * t252;
-        let t298 = minus_s_distal_leg2 * t33 * t297;
-        let t299 = rate_distal_leg2 * t298;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * t67 * t258
-            - 0.7071067811865475 * t10 * t254 - 0.7071067811865475 * t14 * t252 - t298;
-        let t310 = t299 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t33 * t310;
-        let t312 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t242 + gdistal_wy_leg2 * t238
+            - gdistal_wy_leg2 * t236;
+        let t279 = t109 * t238 - t63 * t242 - t28 * t236;
+        let minus_rate_proximal_leg2 = t29 * t279;
+        let t281 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t282 = rate_distal_leg2 * t281;
+        let minus_rate_wrist_leg2 = t61 * t242 - 0.7071067811865475 * t10 * t238
+            - 0.7071067811865475 * t14 * t236 - t281;
+        let t292 = t282 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t29 * t292;
+        let t294 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t252
-            - (gdistal_wx_leg3 * t258 + c_proximal_leg3 * t254);
-        let t326 = t83 * t254 - t60 * t258 + t74 * t252;
-        let t327 = s_distal_leg3 * t61 * t326;
-        let t328 = rate_distal_leg3 * t327;
-        let minus_rate_wrist_leg3 = t327 + 0.7071067811865475 * t79 * t254
-            - 0.7071067811865475 * t42 * t258 + 0.7071067811865475 * t38 * t252;
-        let t339 = t328 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t61 * t339;
-        let t341 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t236
+            - (gdistal_wx_leg3 * t242 + c_proximal_leg3 * t238);
+        let t307 = t75 * t238 - t53 * t242 + t66 * t236;
+        let minus_rate_proximal_leg3 = t54 * t307;
+        let t309 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t310 = rate_distal_leg3 * t309;
+        let t315 = t70 * t238 - t36 * t242 + t33 * t236;
+        let t320 = t9 * t238 - t37 * t242 + t13 * t236;
+        let minus_rate_wrist_leg3 = t309 + 0.7071067811865475 * (t315 + t320);
+        let t325 = t310 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t54 * t325;
+        let t327 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t258
-            + minus_gdistal_wy_leg4 * t254 + minus_gdistal_wy_leg4 * t252;
-        let t355 = t159 * t254 - t173 * t258 + t214 * t252;
-        let t356 = s_distal_leg4 * t160 * t355;
-        let t357 = minus_rate_distal_leg4 * t356;
-        let minus_rate_wrist_leg4 = t356 + 0.7071067811865475 * t141 * t254
-            - 0.7071067811865475 * t169 * t258 + 0.7071067811865475 * t140 * t252;
-        let t368 = t357 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t160 * t368;
-        let t370 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t372 = minus_gproximal_wx_leg1 * t284 + minus_gproximal_wx_leg2 * t312
-            + minus_gproximal_wx_leg3 * t341 + minus_gproximal_wx_leg4 * t370;
-        let t381 = t185 * t372
-            - (minus_gproximal_wy_leg1 * t284 + minus_gproximal_wy_leg2 * t312
-                + minus_gproximal_wy_leg3 * t341 + minus_gproximal_wy_leg4 * t370);
-        let t393 = gproximal_wz_leg1 * t284 + gproximal_wz_leg2 * t312
-            - minus_gproximal_wz_leg3 * t341 - minus_gproximal_wz_leg4 * t370
-            + t225 * t372 - t228 * t381;
-        let t394 = t240 * t393;
-        let t396 = t188 * t381 - t228 * t394;
-        let t402 = t184 * t372 + t185 * t396 + t225 * t394;
-        let t406 = t78 * t396 - t40 * t402 + t37 * t394;
-        let t412 = t78 * t254 - t40 * t258 + t37 * t252;
-        let t417 = t9 * t254 - t41 * t258 + t13 * t252;
-        let t418 = t412 * t417;
-        let t419 = t5 * t418;
-        let t425 = t5 * t254 - t66 * t258 + t11 * t252;
-        let t426 = t412 * t425;
-        let t427 = t9 * t426;
-        let t428 = t78 * t406 + t419 - t427;
-        let t433 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t133;
-        let t435 = t66 * t418;
-        let t437 = t41 * t426;
-        let t438 = t40 * t406 + t435 - t437;
-        let t444 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t133;
-        let t446 = t11 * t418;
-        let t448 = t13 * t426;
-        let t449 = t37 * t406 + t446 - t448;
-        let t455 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t133;
-        let t460 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t133;
-        let t466 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t133;
-        let t469 = t125 * t133;
-        let t471 = t112 * t133;
-        let t474 = t130 * t133;
-        let t477 = t425 * t417;
-        let t478 = t477 + t406;
-        let t484 = t5 * t396 - t66 * t402 + t11 * t394;
-        let t485 = t418 - t484;
-        let t488 = t412 * t412;
-        let t489 = t425 * t425;
-        let t490 = t488 - t489;
-        let t492 = t5 * t478 - t78 * t485 + t9 * t490;
-        let t498 = t66 * t478 - t40 * t485 + t41 * t490;
-        let t505 = t11 * t478 - t37 * t485 + t13 * t490;
-        let t522 = t9 * t396 - t41 * t402 + t13 * t394;
-        let t523 = t426 + t522;
-        let t525 = t417 * t417;
-        let t526 = t525 - t488;
-        let t529 = t477 - t406;
-        let t531 = t78 * t523 + t5 * t526 - t9 * t529;
-        let t537 = t40 * t523 + t66 * t526 - t41 * t529;
-        let t544 = t37 * t523 + t11 * t526 - t13 * t529;
-        let t558 = t78 * t477;
-        let t560 = t5 * t484 - t558 + t427;
-        let t563 = t40 * t477;
-        let t565 = t66 * t484 - t563 + t437;
-        let t569 = t37 * t477;
-        let t571 = t11 * t484 - t569 + t448;
-        let t584 = t489 - t525;
-        let t586 = t426 - t522;
-        let t589 = t418 + t484;
-        let t591 = t78 * t584 - t5 * t586 + t9 * t589;
-        let t597 = t40 * t584 - t66 * t586 + t41 * t589;
-        let t604 = t37 * t584 - t11 * t586 + t13 * t589;
-        let t619 = t558 - t419 + t9 * t522;
-        let t623 = t563 - t435 + t41 * t522;
-        let t628 = t569 - t446 + t13 * t522;
-        let t641 = 9.81 * t11;
-        let t643 = 9.81 * t13;
-        let t645 = t9 * t641 - t5 * t643;
-        let t649 = t41 * t641 - t66 * t643;
-        let t659 = 9.81 * t37;
-        let t661 = t78 * t643 - t9 * t659;
-        let t665 = t40 * t643 - t41 * t659;
-        let t676 = t5 * t659 - t78 * t641;
-        let t680 = t66 * t659 - t40 * t641;
-        let t694 = t118 * t396 - t104 * t402 - t109 * t394 - t282;
-        let minus_rate_dot_proximal_leg1 = t105 * t694;
-        let t701 = t122 * t396 - t71 * t402 - t32 * t394 - t310;
-        let minus_rate_dot_proximal_leg2 = t33 * t701;
-        let t708 = t83 * t396 - t60 * t402 + t74 * t394 + t339;
-        let minus_rate_dot_proximal_leg3_2 = t61 * t708;
-        let t714 = minus_gproximal_wx_leg4 * t433 - minus_gproximal_wy_leg4 * t134
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t242
+            + minus_gdistal_wy_leg4 * t238 + minus_gdistal_wy_leg4 * t236;
+        let t340 = t143 * t238 - t157 * t242 + t198 * t236;
+        let minus_rate_proximal_leg4 = t144 * t340;
+        let t342 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t343 = minus_rate_distal_leg4 * t342;
+        let t348 = t5 * t238 - t59 * t242 + t11 * t236;
+        let minus_rate_wrist_leg4 = t342 + 0.7071067811865475 * (t348 + t320);
+        let t353 = t343 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t144 * t353;
+        let t355 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t357 = minus_gproximal_wx_leg1 * t267 + minus_gproximal_wx_leg2 * t294
+            + minus_gproximal_wx_leg3 * t327 + minus_gproximal_wx_leg4 * t355;
+        let t366 = t169 * t357
+            - (minus_gproximal_wy_leg1 * t267 + minus_gproximal_wy_leg2 * t294
+                + minus_gproximal_wy_leg3 * t327 + minus_gproximal_wy_leg4 * t355);
+        let t378 = gproximal_wz_leg1 * t267 + gproximal_wz_leg2 * t294
+            - minus_gproximal_wz_leg3 * t327 - minus_gproximal_wz_leg4 * t355
+            + t209 * t357 - t212 * t366;
+        let t379 = t224 * t378;
+        let t381 = t172 * t366 - t212 * t379;
+        let t387 = t168 * t357 + t169 * t381 + t209 * t379;
+        let t391 = t70 * t381 - t36 * t387 + t33 * t379;
+        let t393 = t315 * t320;
+        let t394 = t5 * t393;
+        let t396 = t315 * t348;
+        let t397 = t9 * t396;
+        let t398 = t70 * t391 + t394 - t397;
+        let t403 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t120;
+        let t405 = t59 * t393;
+        let t407 = t37 * t396;
+        let t408 = t36 * t391 + t405 - t407;
+        let t414 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t120;
+        let t416 = t11 * t393;
+        let t418 = t13 * t396;
+        let t419 = t33 * t391 + t416 - t418;
+        let t425 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t120;
+        let t430 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t120;
+        let t436 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t120;
+        let t439 = t112 * t120;
+        let t441 = t100 * t120;
+        let t444 = t117 * t120;
+        let t451 = t5 * t381 - t59 * t387 + t11 * t379;
+        let t452 = t451 - t393;
+        let t454 = t348 * t320;
+        let t455 = t391 + t454;
+        let t458 = t315 * t315;
+        let t459 = t348 * t348;
+        let t460 = t458 - t459;
+        let t462 = t70 * t452 + t5 * t455 + t9 * t460;
+        let t468 = t36 * t452 + t59 * t455 + t37 * t460;
+        let t475 = t33 * t452 + t11 * t455 + t13 * t460;
+        let t492 = t9 * t381 - t37 * t387 + t13 * t379;
+        let t493 = t492 + t396;
+        let t495 = t320 * t320;
+        let t496 = t495 - t458;
+        let t499 = t391 - t454;
+        let t501 = t70 * t493 + t5 * t496 + t9 * t499;
+        let t507 = t36 * t493 + t59 * t496 + t37 * t499;
+        let t514 = t33 * t493 + t11 * t496 + t13 * t499;
+        let t528 = t70 * t454;
+        let t530 = t5 * t451 - t528 + t397;
+        let t533 = t36 * t454;
+        let t535 = t59 * t451 - t533 + t407;
+        let t539 = t33 * t454;
+        let t541 = t11 * t451 - t539 + t418;
+        let t554 = t459 - t495;
+        let t556 = t492 - t396;
+        let t559 = t451 + t393;
+        let t561 = t70 * t554 + t5 * t556 + t9 * t559;
+        let t567 = t36 * t554 + t59 * t556 + t37 * t559;
+        let t574 = t33 * t554 + t11 * t556 + t13 * t559;
+        let t589 = t528 - t394 + t9 * t492;
+        let t593 = t533 - t405 + t37 * t492;
+        let t598 = t539 - t416 + t13 * t492;
+        let t611 = 9.81 * t70;
+        let t613 = 9.81 * t36;
+        let t622 = 9.81 * t5;
+        let t624 = 9.81 * t59;
+        let t633 = 9.81 * t9;
+        let t635 = 9.81 * t37;
+        let t649 = t105 * t381 - t92 * t387 - t97 * t379 - t265;
+        let minus_rate_dot_proximal_leg1 = t93 * t649;
+        let t656 = t109 * t381 - t63 * t387 - t28 * t379 - t292;
+        let minus_rate_dot_proximal_leg2 = t29 * t656;
+        let t663 = t75 * t381 - t53 * t387 + t66 * t379 + t325;
+        let minus_rate_dot_proximal_leg3_2 = t54 * t663;
+        let t669 = minus_gproximal_wx_leg4 * t403 - minus_gproximal_wy_leg4 * t121
+            - minus_gproximal_wz_leg4 * t414;
+        let t675 = t143 * t381 - t157 * t387 + t198 * t379 - t353;
+        let minus_rate_dot_proximal_leg4 = t144 * t675;
+        let t682 = minus_gproximal_wy_leg4 * t430 - minus_gproximal_wx_leg4 * t425
+            + minus_gproximal_wz_leg4 * t436;
+        let t688 = minus_gproximal_wy_leg4 * t441 - minus_gproximal_wx_leg4 * t439
             - minus_gproximal_wz_leg4 * t444;
-        let t720 = t159 * t396 - t173 * t402 + t214 * t394 - t368;
-        let minus_rate_dot_proximal_leg4 = t160 * t720;
-        let t727 = minus_gproximal_wy_leg4 * t460 - minus_gproximal_wx_leg4 * t455
-            + minus_gproximal_wz_leg4 * t466;
-        let t733 = minus_gproximal_wy_leg4 * t471 - minus_gproximal_wx_leg4 * t469
-            - minus_gproximal_wz_leg4 * t474;
-        let t738 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t742 = 6.936717523440031 * c_proximal_leg1;
-        let t743 = 6.936717523440031 * c_proximal_leg2;
-        let t744 = 6.936717523440031 * c_proximal_leg3;
-        let t745 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t105 * t269;
-        let minus_rate_proximal_leg2 = t33 * t297;
-        let minus_rate_proximal_leg3 = t61 * t326;
-        let minus_rate_proximal_leg4 = t160 * t355;
-        let t762 = t694 + t271;
-        let t764 = t269 * rate_distal_leg1;
-        let t771 = minus_gdistal_wx_leg1 * t433 + c_proximal_leg1 * t134
-            + minus_gdistal_wx_leg1 * t444;
-        let t772 = t269 * t270;
-        let t779 = minus_gdistal_wx_leg1 * t455 + c_proximal_leg1 * t460
-            + minus_gdistal_wx_leg1 * t466;
-        let t785 = minus_gdistal_wx_leg1 * t474
-            - (minus_gdistal_wx_leg1 * t469 + c_proximal_leg1 * t471);
-        let t791 = c_proximal_leg2 * t433 + gdistal_wy_leg2 * t134
-            - gdistal_wy_leg2 * t444;
-        let t792 = t297 * t298;
-        let t794 = t701 + t299;
-        let t796 = t297 * rate_distal_leg2;
-        let t803 = gdistal_wy_leg2 * t466
-            - (c_proximal_leg2 * t455 + gdistal_wy_leg2 * t460);
-        let t810 = c_proximal_leg2 * t469 + gdistal_wy_leg2 * t471
-            + gdistal_wy_leg2 * t474;
-        let t816 = gdistal_wx_leg3 * t444
-            - (gdistal_wx_leg3 * t433 + c_proximal_leg3 * t134);
-        let t817 = t326 * t327;
-        let t823 = gdistal_wx_leg3 * t455 + c_proximal_leg3 * t460
-            - gdistal_wx_leg3 * t466;
-        let t825 = t326 * rate_distal_leg3;
-        let t827 = t708 - t328;
-        let t834 = gdistal_wx_leg3 * t469 + c_proximal_leg3 * t471
-            + gdistal_wx_leg3 * t474;
-        let t837 = t720 + t357;
-        let t839 = t355 * minus_rate_distal_leg4;
-        let t841 = c_distal_leg4 * t837 + s_distal_leg4 * t839;
-        let t847 = c_proximal_leg4 * t433 + minus_gdistal_wy_leg4 * t134
-            + minus_gdistal_wy_leg4 * t444;
-        let t848 = t355 * t356;
-        let t855 = c_proximal_leg4 * t455 + minus_gdistal_wy_leg4 * t460
-            + minus_gdistal_wy_leg4 * t466;
-        let t863 = c_proximal_leg4 * t469 + minus_gdistal_wy_leg4 * t471
-            - minus_gdistal_wy_leg4 * t474;
-        let t867 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t874 = t269 * t269;
-        let t875 = t270 * t270;
-        let t876 = t874 - t875;
-        let t881 = t297 * t297;
-        let t882 = t298 * t298;
-        let t883 = t881 - t882;
-        let t885 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t895 = t326 * t326;
-        let t896 = t327 * t327;
-        let t897 = t895 - t896;
-        let t900 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t911 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t915 = s_distal_leg4 * (t357 + t837) - c_distal_leg4 * (t839 + t839 - t911);
-        let t917 = t355 * t355;
-        let t918 = t356 * t356;
-        let t919 = t917 - t918;
-        let minus_rate_dot_distal_leg1 = t269 * minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t402 + c_proximal_leg1 * t396
-            + minus_gdistal_wx_leg1 * t394 - minus_rate_dot_distal_leg1;
-        let t938 = rate_distal_leg1 * rate_distal_leg1;
-        let minus_rate_dot_distal_leg2 = t297 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t402 + gdistal_wy_leg2 * t396
-            - gdistal_wy_leg2 * t394 - minus_rate_dot_distal_leg2;
-        let t956 = rate_distal_leg2 * rate_distal_leg2;
-        let t964 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t326 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t394
-            - (gdistal_wx_leg3 * t402 + c_proximal_leg3 * t396)
+        let t693 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t700 = 6.936717523440031 * c_proximal_leg4;
+        let t714 = t255 + t649 + t255;
+        let t720 = minus_gdistal_wx_leg1 * t403 + c_proximal_leg1 * t121
+            + minus_gdistal_wx_leg1 * t414;
+        let t721 = t252 * t254;
+        let t728 = minus_gdistal_wx_leg1 * t425 + c_proximal_leg1 * t430
+            + minus_gdistal_wx_leg1 * t436;
+        let t734 = minus_gdistal_wx_leg1 * t444
+            - (minus_gdistal_wx_leg1 * t439 + c_proximal_leg1 * t441);
+        let t740 = c_proximal_leg2 * t403 + gdistal_wy_leg2 * t121
+            - gdistal_wy_leg2 * t414;
+        let t741 = t279 * t281;
+        let t744 = t282 + t656 + t282;
+        let t750 = gdistal_wy_leg2 * t436
+            - (c_proximal_leg2 * t425 + gdistal_wy_leg2 * t430);
+        let t757 = c_proximal_leg2 * t439 + gdistal_wy_leg2 * t441
+            + gdistal_wy_leg2 * t444;
+        let t763 = gdistal_wx_leg3 * t414
+            - (gdistal_wx_leg3 * t403 + c_proximal_leg3 * t121);
+        let t764 = t307 * t309;
+        let t770 = gdistal_wx_leg3 * t425 + c_proximal_leg3 * t430
+            - gdistal_wx_leg3 * t436;
+        let t773 = t663 - t310 - t310;
+        let t779 = gdistal_wx_leg3 * t439 + c_proximal_leg3 * t441
+            + gdistal_wx_leg3 * t444;
+        let t783 = t343 + t675 + t343;
+        let t784 = c_distal_leg4 * t783;
+        let t790 = c_proximal_leg4 * t403 + minus_gdistal_wy_leg4 * t121
+            + minus_gdistal_wy_leg4 * t414;
+        let t791 = t340 * t342;
+        let t798 = c_proximal_leg4 * t425 + minus_gdistal_wy_leg4 * t430
+            + minus_gdistal_wy_leg4 * t436;
+        let t806 = c_proximal_leg4 * t439 + minus_gdistal_wy_leg4 * t441
+            - minus_gdistal_wy_leg4 * t444;
+        let t810 = t252 * rate_distal_leg1;
+        let t811 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t817 = t252 * t252;
+        let t818 = t254 * t254;
+        let t819 = t817 - t818;
+        let t824 = t279 * t279;
+        let t825 = t281 * t281;
+        let t826 = t824 - t825;
+        let t828 = t279 * rate_distal_leg2;
+        let t829 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t838 = t307 * t307;
+        let t839 = t309 * t309;
+        let t840 = t838 - t839;
+        let t843 = t307 * rate_distal_leg3;
+        let t844 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t853 = t340 * minus_rate_distal_leg4;
+        let t854 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t858 = s_distal_leg4 * t783 - c_distal_leg4 * (t853 + t853 - t854);
+        let t860 = t340 * t340;
+        let t861 = t342 * t342;
+        let t862 = t860 - t861;
+        let minus_rate_dot_distal_leg1 = t252 * minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t387 + c_proximal_leg1 * t381
+            + minus_gdistal_wx_leg1 * t379 - minus_rate_dot_distal_leg1;
+        let t881 = rate_distal_leg1 * rate_distal_leg1;
+        let minus_rate_dot_distal_leg2 = t279 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t387 + gdistal_wy_leg2 * t381
+            - gdistal_wy_leg2 * t379 - minus_rate_dot_distal_leg2;
+        let t899 = rate_distal_leg2 * rate_distal_leg2;
+        let t907 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t307 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t379
+            - (gdistal_wx_leg3 * t387 + c_proximal_leg3 * t381)
             - minus_rate_dot_distal_leg3;
-        let minus_rate_dot_distal_leg4 = t355 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t402
-            + minus_gdistal_wy_leg4 * t396 + minus_gdistal_wy_leg4 * t394
+        let minus_rate_dot_distal_leg4 = t340 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t387
+            + minus_gdistal_wy_leg4 * t381 + minus_gdistal_wy_leg4 * t379
             + minus_rate_dot_distal_leg4;
-        let t988 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t991 = c_distal_leg4 * (t848 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t988 - t917);
-        let t1033 = c_distal_leg4 * (t918 - t988)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t848);
-        let t1045 = c_distal_leg1 * t742 - 3.4683587617200153 * t87;
-        let t1052 = c_distal_leg2 * t743 - 3.4683587617200153 * t15;
-        let t1060 = c_distal_leg3 * t744 + 3.4683587617200153 * t43;
-        let t1066 = 6.936717523440031 * t173;
-        let t1070 = c_distal_leg4 * t745 + 3.4683587617200153 * t142;
+        let t931 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t934 = c_distal_leg4 * (t791 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t931 - t860);
+        let t976 = c_distal_leg4 * (t861 - t931)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t791);
+        let t986 = t78 * (-6.936717523440031);
+        let t991 = t14 * (-6.936717523440031);
+        let t997 = t34 * 6.936717523440031;
+        let t1003 = 6.936717523440031 * t157;
+        let t1005 = t127 * 6.936717523440031;
         Ok([
             [
-                t134 * t428 - t433 * t438 + t444 * t449, t134 * t492 - t433 * t498 + t444 * t505,
-                t134 * t531 - t433 * t537 + t444 * t544, t134 * t560 - t433 * t565 + t444 * t571,
-                t134 * t591 - t433 * t597 + t444 * t604, t134 * t619 - t433 * t623 + t444 * t628,
-                t134 * t645 - t433 * t649, t134 * t661 - t433 * t665, t134 * t676 - t433 * t680,
-                -minus_rate_dot_proximal_leg1, 0.0, 0.0, -(t714 * minus_rate_dot_proximal_leg4),
-                -(6.936717523440031 * s_proximal_leg1), 0.0, 0.0, t714 * t738, -t742, 0.0, 0.0,
-                -(t714 * t745), -minus_rate_proximal_leg1, 0.0, 0.0,
-                -(t714 * minus_rate_proximal_leg4),
+                t121 * t398 - t403 * t408 + t414 * t419, t121 * t462 - t403 * t468 + t414 * t475,
+                t121 * t501 - t403 * t507 + t414 * t514, t121 * t530 - t403 * t535 + t414 * t541,
+                t121 * t561 - t403 * t567 + t414 * t574, t121 * t589 - t403 * t593 + t414 * t598,
+                -(t403 * t611 + t121 * t613), -(t403 * t622 + t121 * t624),
+                -(t403 * t633 + t121 * t635), -minus_rate_dot_proximal_leg1, 0.0, 0.0,
+                -(t669 * minus_rate_dot_proximal_leg4), -(6.936717523440031 * s_proximal_leg1), 0.0,
+                0.0, t669 * t693, -(6.936717523440031 * c_proximal_leg1), 0.0, 0.0, -(t669 * t700),
+                -minus_rate_proximal_leg1, 0.0, 0.0, -(t669 * minus_rate_proximal_leg4),
                 -::overact::math::sign(minus_rate_proximal_leg1), 0.0, 0.0,
-                -::overact::math::signed(t714, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t714,
-                -(c_distal_leg1 * t762 + minus_s_distal_leg1 * t764 + t771 * t772), -(t791 * t792),
-                t816 * t817, -(t714 * t841 + t847 * t848),
-                c_distal_leg1 * (t764 - (t867 - t764))
-                    - minus_s_distal_leg1 * (t271 + t762) + t771 * t876,
-                t791 * t883,
-                t816 * t897,
-                t714 * t915 - t847 * t919,
-                t771 * t694
-                    - (c_distal_leg1 * (t772 + rate_dot_distal_leg1)
-                        + minus_s_distal_leg1 * (t938 - t874)),
-                t791 * t701,
-                t816 * t708,
-                t714 * t991 - t847 * t720,
-                minus_s_distal_leg1 * (t772 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t875 - t938) + t771 * t867,
-                t791 * t885,
-                -(t816 * t900),
-                t847 * t911 - t714 * t1033,
-                6.936717523440031 * t118 + t771 * t1045,
-                t791 * t1052,
-                t816 * t1060,
-                t714 * t1066 - t847 * t1070,
+                -::overact::math::signed(t669, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t669,
+                -(c_distal_leg1 * t714 + t720 * t721), -(t740 * t741), t763 * t764,
+                -(t669 * t784 + t790 * t791),
+                c_distal_leg1 * (t810 - (t811 - t810)) - minus_s_distal_leg1 * t714
+                    + t720 * t819,
+                t740 * t826,
+                t763 * t840,
+                t669 * t858 - t790 * t862,
+                t720 * t649
+                    - (c_distal_leg1 * (t721 + rate_dot_distal_leg1)
+                        + minus_s_distal_leg1 * (t881 - t817)),
+                t740 * t656,
+                t763 * t663,
+                t669 * t934 - t790 * t675,
+                minus_s_distal_leg1 * (t721 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t818 - t881) + t720 * t811,
+                t740 * t829,
+                -(t763 * t844),
+                t790 * t854 - t669 * t976,
+                6.936717523440031 * t105 + t720 * t986,
+                t740 * t991,
+                t763 * t997,
+                t669 * t1003 - t790 * t1005,
             ],
             [
-                t455 * t438 - t460 * t428 - t466 * t449, t455 * t498 - t460 * t492 - t466 * t505,
-                t455 * t537 - t460 * t531 - t466 * t544, t455 * t565 - t460 * t560 - t466 * t571,
-                t455 * t597 - t460 * t591 - t466 * t604, t455 * t623 - t460 * t619 - t466 * t628,
-                t455 * t649 - t460 * t645, t455 * t665 - t460 * t661, t455 * t680 - t460 * t676,
-                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t727 * minus_rate_dot_proximal_leg4),
-                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t727 * t738, 0.0, -t743, 0.0,
-                -(t727 * t745), 0.0, -minus_rate_proximal_leg2, 0.0,
-                -(t727 * minus_rate_proximal_leg4), 0.0,
+                t425 * t408 - t430 * t398 - t436 * t419, t425 * t468 - t430 * t462 - t436 * t475,
+                t425 * t507 - t430 * t501 - t436 * t514, t425 * t535 - t430 * t530 - t436 * t541,
+                t425 * t567 - t430 * t561 - t436 * t574, t425 * t593 - t430 * t589 - t436 * t598,
+                t425 * t611 + t430 * t613, t425 * t622 + t430 * t624, t425 * t633 + t430 * t635,
+                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t682 * minus_rate_dot_proximal_leg4),
+                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t682 * t693, 0.0,
+                -(6.936717523440031 * c_proximal_leg2), 0.0, -(t682 * t700), 0.0,
+                -minus_rate_proximal_leg2, 0.0, -(t682 * minus_rate_proximal_leg4), 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg2), 0.0,
-                -::overact::math::signed(t727, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t727,
-                t779 * t772, -(c_distal_leg2 * t794 + minus_s_distal_leg2 * t796 + t803 * t792),
-                t823 * t817, t855 * t848 - t727 * t841, -(t779 * t876),
-                c_distal_leg2 * (t796 - (t885 - t796))
-                    - minus_s_distal_leg2 * (t299 + t794) + t803 * t883,
-                t823 * t897,
-                t727 * t915 + t855 * t919,
-                -(t779 * t694),
-                t803 * t701
-                    - (c_distal_leg2 * (t792 + rate_dot_distal_leg2)
-                        + minus_s_distal_leg2 * (t956 - t881)),
-                t823 * t708,
-                t727 * t991 + t855 * t720,
-                -(t779 * t867),
-                minus_s_distal_leg2 * (t792 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t882 - t956) + t803 * t885,
-                -(t823 * t900),
-                -(t727 * t1033 + t855 * t911),
-                -(t779 * t1045),
-                t803 * t1052 - 6.936717523440031 * t71,
-                t823 * t1060,
-                t727 * t1066 + t855 * t1070,
+                -::overact::math::signed(t682, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t682,
+                t728 * t721, -(c_distal_leg2 * t744 + t750 * t741), t770 * t764,
+                t798 * t791 - t682 * t784, -(t728 * t819),
+                c_distal_leg2 * (t828 - (t829 - t828)) - minus_s_distal_leg2 * t744
+                    + t750 * t826,
+                t770 * t840,
+                t682 * t858 + t798 * t862,
+                -(t728 * t649),
+                t750 * t656
+                    - (c_distal_leg2 * (t741 + rate_dot_distal_leg2)
+                        + minus_s_distal_leg2 * (t899 - t824)),
+                t770 * t663,
+                t682 * t934 + t798 * t675,
+                -(t728 * t811),
+                minus_s_distal_leg2 * (t741 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t825 - t899) + t750 * t829,
+                -(t770 * t844),
+                -(t682 * t976 + t798 * t854),
+                -(t728 * t986),
+                t750 * t991 - 6.936717523440031 * t63,
+                t770 * t997,
+                t682 * t1003 + t798 * t1005,
             ],
             [
-                t469 * t438 - t471 * t428 + t474 * t449, t469 * t498 - t471 * t492 + t474 * t505,
-                t469 * t537 - t471 * t531 + t474 * t544, t469 * t565 - t471 * t560 + t474 * t571,
-                t469 * t597 - t471 * t591 + t474 * t604, t469 * t623 - t471 * t619 + t474 * t628,
-                t469 * t649 - t471 * t645, t469 * t665 - t471 * t661, t469 * t680 - t471 * t676,
-                0.0, 0.0, -minus_rate_dot_proximal_leg3_2, -(t733 * minus_rate_dot_proximal_leg4),
-                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t733 * t738, 0.0, 0.0, -t744,
-                -(t733 * t745), 0.0, 0.0, -minus_rate_proximal_leg3,
-                -(t733 * minus_rate_proximal_leg4), 0.0, 0.0,
+                t439 * t408 - t441 * t398 + t444 * t419, t439 * t468 - t441 * t462 + t444 * t475,
+                t439 * t507 - t441 * t501 + t444 * t514, t439 * t535 - t441 * t530 + t444 * t541,
+                t439 * t567 - t441 * t561 + t444 * t574, t439 * t593 - t441 * t589 + t444 * t598,
+                t439 * t611 + t441 * t613, t439 * t622 + t441 * t624, t439 * t633 + t441 * t635,
+                0.0, 0.0, -minus_rate_dot_proximal_leg3_2, -(t688 * minus_rate_dot_proximal_leg4),
+                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t688 * t693, 0.0, 0.0,
+                -(6.936717523440031 * c_proximal_leg3), -(t688 * t700), 0.0, 0.0,
+                -minus_rate_proximal_leg3, -(t688 * minus_rate_proximal_leg4), 0.0, 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg3),
-                -::overact::math::signed(t733, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t733,
-                -(t785 * t772), t810 * t792,
-                s_distal_leg3 * t825 - c_distal_leg3 * t827 + t834 * t817,
-                t863 * t848 - t733 * t841, t785 * t876, -(t810 * t883),
-                c_distal_leg3 * (t825 + t900 + t825) + s_distal_leg3 * (t827 - t328)
-                    + t834 * t897,
-                t733 * t915 + t863 * t919,
-                t785 * t694,
-                -(t810 * t701),
-                s_distal_leg3 * (t964 - t895)
-                    - c_distal_leg3 * (rate_dot_distal_leg3 - t817) + t834 * t708,
-                t733 * t991 + t863 * t720,
-                t785 * t867,
-                -(t810 * t885),
-                s_distal_leg3 * (t817 + rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t896 - t964) - t834 * t900,
-                -(t733 * t1033 + t863 * t911),
-                t785 * t1045,
-                -(t810 * t1052),
-                t834 * t1060 - 6.936717523440031 * t83,
-                t733 * t1066 + t863 * t1070,
+                -::overact::math::signed(t688, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t688,
+                -(t734 * t721), t757 * t741, t779 * t764 - c_distal_leg3 * t773,
+                t806 * t791 - t688 * t784, t734 * t819, -(t757 * t826),
+                c_distal_leg3 * (t843 + t844 + t843) + s_distal_leg3 * t773
+                    + t779 * t840,
+                t688 * t858 + t806 * t862,
+                t734 * t649,
+                -(t757 * t656),
+                s_distal_leg3 * (t907 - t838)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t764) + t779 * t663,
+                t688 * t934 + t806 * t675,
+                t734 * t811,
+                -(t757 * t829),
+                s_distal_leg3 * (t764 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t839 - t907) - t779 * t844,
+                -(t688 * t976 + t806 * t854),
+                t734 * t986,
+                -(t757 * t991),
+                t779 * t997 - 6.936717523440031 * t75,
+                t688 * t1003 + t806 * t1005,
             ],
         ])
     }
@@ -8210,7 +7942,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 164 operations (56 additions, 100 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 165 intermediates.
+    /// 152 operations (52 additions, 92 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 153 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8232,81 +7964,77 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t31 - c_distal_leg1) * t34;
-        let t37 = t13 - t4;
-        let t38 = pose[3] * t0;
-        let t39 = pose[0] * t6;
-        let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t31 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t28 - c_distal_leg1) * t31;
+        let t34 = t13 - t4;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let t37 = t35 - t36;
+        let t38 = t34 - t37;
+        let t39 = t35 + t36;
+        let t40 = t39 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t38 + t40);
+        let t44 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t44, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = pose[2] * t6;
-        let t56 = pose[0] * t3;
-        let t57 = t55 - t56;
-        let t59 = t41 - t43;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * ((t57 - t9) * t59));
-        let t64 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t64;
-        let t68 = t11 + t14;
-        let t69 = t5 + t9;
-        let t70 = t68 - t69;
-        let s_distal_leg3 = 0.5 * t70;
-        let t74 = 1.0 - 0.25 * (t70 * t70);
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        let t46 = t38 - t40;
+        let t49 = 1.0 / (0.5 * (c_distal_leg2 * t46));
+        let t50 = pose[2] * t6;
+        let t51 = pose[0] * t3;
+        let t52 = t50 - t51;
+        let minus_s_proximal_leg2 = t49 * (0.35355339059327373 * ((t52 - t9) * t46));
+        let t58 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t58;
+        let t62 = t11 + t14;
+        let t63 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t62 - t63);
+        let t67 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t67, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t80 = 1.0 / (0.5 * (t69 * c_distal_leg3 + t68 * c_distal_leg3));
-        let t81 = t69 + t68;
-        let c_proximal_leg3 = t80 * (0.25 * (t81 * t81));
-        let t85 = s_distal_leg3 * c_proximal_leg3;
-        let t88 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t85 + c_distal_leg3) * t88;
-        let t92 = t42 + t14;
-        let t93 = t37 + t40;
-        let t94 = t92 - t93;
-        let s_distal_leg4 = 0.5 * t94;
-        let t98 = 1.0 - 0.25 * (t94 * t94);
-        ::overact::guard::reach(t98, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t98);
+        let t69 = t63 + t62;
+        let t72 = 1.0 / (0.5 * (c_distal_leg3 * t69));
+        let c_proximal_leg3 = t72 * (0.25 * (t69 * t69));
+        let t76 = s_distal_leg3 * c_proximal_leg3;
+        let t79 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t76 + c_distal_leg3) * t79;
+        let t83 = t39 + t14;
+        let t84 = t34 + t37;
+        let s_distal_leg4 = 0.5 * (t83 - t84);
+        let t88 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t88, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t104 = 1.0 / (0.5 * (t93 * c_distal_leg4 + t92 * c_distal_leg4));
-        let t106 = t93 + t92;
-        let minus_s_proximal_leg4 = t104 * (0.35355339059327373 * ((t57 + t9) * t106));
-        let t111 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t111;
-        let t115 = t55 + t56;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * ((t115 - t40) * t27));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t34;
-        let c_proximal_leg2 = t54 * (0.25 * (t59 * t59));
-        let t126 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t126 - c_distal_leg2) * t64;
-        let s_proximal_leg3 = t80 * (0.35355339059327373 * ((t115 + t40) * t81));
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t88;
-        let c_proximal_leg4 = t104 * (0.25 * (t106 * t106));
-        let t143 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t143 + c_distal_leg4) * t111;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t31 + c_distal_leg1) * t34;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t126 + c_distal_leg2) * t64;
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t85 - c_distal_leg3) * t88;
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t143 - c_distal_leg4) * t111;
+        let t90 = t84 + t83;
+        let t93 = 1.0 / (0.5 * (c_distal_leg4 * t90));
+        let minus_s_proximal_leg4 = t93 * (0.35355339059327373 * ((t52 + t9) * t90));
+        let t99 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t99;
+        let t103 = t50 + t51;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t103 - t37) * t21));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t31;
+        let c_proximal_leg2 = t49 * (0.25 * (t46 * t46));
+        let t114 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t114 - c_distal_leg2) * t58;
+        let s_proximal_leg3 = t72 * (0.35355339059327373 * ((t103 + t37) * t69));
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t79;
+        let c_proximal_leg4 = t93 * (0.25 * (t90 * t90));
+        let t131 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t131 + c_distal_leg4) * t99;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t28 + c_distal_leg1) * t31;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t114 + c_distal_leg2) * t58;
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t76 - c_distal_leg3) * t79;
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t131 - c_distal_leg4) * t99;
         Ok([
             -(minus_gproximal_wx_leg1 * torques[0] + minus_gproximal_wx_leg2 * torques[1]
                 + minus_gproximal_wx_leg3 * torques[2]
@@ -8327,7 +8055,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 206 operations (67 additions, 130 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 207 intermediates.
+    /// 194 operations (63 additions, 122 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 195 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8349,126 +8077,122 @@ impl Spherical4Rrr {
         let t12 = t6 - t11;
         let t13 = t1 - t3;
         let t14 = t12 + t13;
-        let t15 = t9 - t14;
-        let s_distal_leg4 = 0.5 * t15;
-        let t19 = 1.0 - 0.25 * (t15 * t15);
-        ::overact::guard::reach(t19, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t19);
+        let s_distal_leg4 = 0.5 * (t9 - t14);
+        let t18 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t18, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t18);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t25 = 1.0 / (0.5 * (t14 * c_distal_leg4 + t9 * c_distal_leg4));
-        let t26 = pose[2] * t2;
-        let t27 = pose[0] * t10;
-        let t28 = t26 - t27;
-        let t29 = pose[3] * t2;
-        let t30 = pose[0] * t0;
-        let t31 = t29 + t30;
-        let t33 = t14 + t9;
-        let minus_s_proximal_leg4 = t25 * (0.35355339059327373 * ((t28 + t31) * t33));
-        let t38 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t38;
-        let t40 = t12 - t13;
-        let t41 = t4 - t8;
-        let t42 = t40 + t41;
-        let minus_s_distal_leg2 = 0.5 * t42;
-        let t46 = 1.0 - 0.25 * (t42 * t42);
-        ::overact::guard::reach(t46, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t46);
+        let t20 = t14 + t9;
+        let t23 = 1.0 / (0.5 * (c_distal_leg4 * t20));
+        let t24 = pose[2] * t2;
+        let t25 = pose[0] * t10;
+        let t26 = t24 - t25;
+        let t27 = pose[3] * t2;
+        let t28 = pose[0] * t0;
+        let t29 = t27 + t28;
+        let minus_s_proximal_leg4 = t23 * (0.35355339059327373 * ((t26 + t29) * t20));
+        let t35 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t35;
+        let t37 = t12 - t13;
+        let t38 = t4 - t8;
+        let minus_s_distal_leg2 = 0.5 * (t37 + t38);
+        let t42 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t42, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t42);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t52 = 1.0 / (0.5 * (t40 * c_distal_leg2 - t41 * c_distal_leg2));
-        let t53 = t40 - t41;
-        let c_proximal_leg2 = t52 * (0.25 * (t53 * t53));
-        let t57 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t60 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t57 + c_distal_leg2) * t60;
-        let t62 = t29 - t30;
-        let t63 = t62 + t8;
-        let t65 = 1.0 - t7 - t11;
-        let t66 = t65 + t31;
-        let t67 = t63 - t66;
-        let s_distal_leg3 = 0.5 * t67;
-        let t71 = 1.0 - 0.25 * (t67 * t67);
-        ::overact::guard::reach(t71, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t71);
+        let t44 = t37 - t38;
+        let t47 = 1.0 / (0.5 * (c_distal_leg2 * t44));
+        let c_proximal_leg2 = t47 * (0.25 * (t44 * t44));
+        let t51 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t54 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t51 + c_distal_leg2) * t54;
+        let t56 = t27 - t28;
+        let t57 = t56 + t8;
+        let t59 = 1.0 - t7 - t11;
+        let t60 = t59 + t29;
+        let s_distal_leg3 = 0.5 * (t57 - t60);
+        let t64 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t64, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t64);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t77 = 1.0 / (0.5 * (t66 * c_distal_leg3 + t63 * c_distal_leg3));
-        let t78 = t26 + t27;
-        let t80 = t66 + t63;
-        let s_proximal_leg3 = t77 * (0.35355339059327373 * ((t78 + t13) * t80));
-        let t85 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t85;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t57 - c_distal_leg2) * t60;
-        let c_proximal_leg3 = t77 * (0.25 * (t80 * t80));
-        let t94 = s_distal_leg3 * c_proximal_leg3;
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t94 - c_distal_leg3) * t85;
-        let t100 = t65 - t31;
-        let t101 = t62 - t8;
-        let t102 = t100 + t101;
-        let minus_s_distal_leg1 = 0.5 * t102;
-        let t106 = 1.0 - 0.25 * (t102 * t102);
-        ::overact::guard::reach(t106, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t106);
+        let t66 = t60 + t57;
+        let t69 = 1.0 / (0.5 * (c_distal_leg3 * t66));
+        let t70 = t24 + t25;
+        let s_proximal_leg3 = t69 * (0.35355339059327373 * ((t70 + t13) * t66));
+        let t76 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t76;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t51 - c_distal_leg2) * t54;
+        let c_proximal_leg3 = t69 * (0.25 * (t66 * t66));
+        let t85 = s_distal_leg3 * c_proximal_leg3;
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t85 - c_distal_leg3) * t76;
+        let t91 = t59 - t29;
+        let t92 = t56 - t8;
+        let minus_s_distal_leg1 = 0.5 * (t91 + t92);
+        let t96 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t96, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t96);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t112 = 1.0 / (0.5 * (t100 * c_distal_leg1 - t101 * c_distal_leg1));
-        let t113 = t100 - t101;
-        let c_proximal_leg1 = t112 * (0.25 * (t113 * t113));
-        let t117 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t120 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t117 - c_distal_leg1) * t120;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t117 + c_distal_leg1) * t120;
-        let minus_s_proximal_leg2 = t52 * (0.35355339059327373 * ((t28 - t31) * t53));
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t60;
-        let t133 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
+        let t98 = t91 - t92;
+        let t101 = 1.0 / (0.5 * (c_distal_leg1 * t98));
+        let c_proximal_leg1 = t101 * (0.25 * (t98 * t98));
+        let t105 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t108 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t105 - c_distal_leg1) * t108;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t105 + c_distal_leg1) * t108;
+        let minus_s_proximal_leg2 = t47 * (0.35355339059327373 * ((t26 - t29) * t44));
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t54;
+        let t121 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wx_leg2;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t94 + c_distal_leg3) * t85;
-        let s_proximal_leg1 = t112 * (0.35355339059327373 * ((t78 - t13) * t113));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t120;
-        let t146 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t85 + c_distal_leg3) * t76;
+        let s_proximal_leg1 = t101 * (0.35355339059327373 * ((t70 - t13) * t98));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t108;
+        let t134 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wy_leg2;
-        let t151 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t139 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg2;
-        let t153 = minus_gproximal_wy_leg3 * t133 - minus_gproximal_wx_leg3 * t146
-            - minus_gproximal_wz_leg3 * t151;
-        ::overact::guard::platform(t153, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t153, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t153, 0.7071067811865474, "kept actuators")?;
-        let t154 = 1.0 / t153;
-        let c_proximal_leg4 = t25 * (0.25 * (t33 * t33));
-        let t160 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t160 + c_distal_leg4) * t38;
-        let t169 = minus_gproximal_wx_leg4
+        let t141 = minus_gproximal_wy_leg3 * t121 - minus_gproximal_wx_leg3 * t134
+            - minus_gproximal_wz_leg3 * t139;
+        ::overact::guard::platform(t141, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t141, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t141, 0.7071067811865474, "kept actuators")?;
+        let t142 = 1.0 / t141;
+        let c_proximal_leg4 = t23 * (0.25 * (t20 * t20));
+        let t148 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t148 + c_distal_leg4) * t35;
+        let t157 = minus_gproximal_wx_leg4
             * ((gproximal_wz_leg2 * minus_gproximal_wy_leg3
-                + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t154)
+                + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t142)
             - minus_gproximal_wy_leg4
                 * ((gproximal_wz_leg2 * minus_gproximal_wx_leg3
-                    + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t154);
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t160 - c_distal_leg4) * t38;
-        let t191 = minus_gproximal_wy_leg4
+                    + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t142);
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t148 - c_distal_leg4) * t35;
+        let t179 = minus_gproximal_wy_leg4
             * ((gproximal_wz_leg1 * minus_gproximal_wx_leg3
-                + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t154)
+                + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t142)
             - minus_gproximal_wx_leg4
                 * ((gproximal_wz_leg1 * minus_gproximal_wy_leg3
-                    + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t154);
-        let t209 = torques[2]
+                    + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t142);
+        let t197 = torques[2]
             + torques[3]
-                * (minus_gproximal_wy_leg4 * (t133 * t154)
-                    - minus_gproximal_wx_leg4 * (t146 * t154)
-                    - minus_gproximal_wz_leg4 * (t151 * t154));
+                * (minus_gproximal_wy_leg4 * (t121 * t142)
+                    - minus_gproximal_wx_leg4 * (t134 * t142)
+                    - minus_gproximal_wz_leg4 * (t139 * t142));
         Ok([
             torques[0]
                 + torques[3]
-                    * (t169
+                    * (t157
                         - minus_gproximal_wz_leg4
                             * ((minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
                                 - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3)
-                                * t154)),
+                                * t142)),
             torques[1]
                 + torques[3]
-                    * (t191
+                    * (t179
                         + minus_gproximal_wz_leg4
                             * ((minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
                                 - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3)
-                                * t154)),
-            t209,
+                                * t142)),
+            t197,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8481,7 +8205,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 869 operations (367 additions, 491 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 873 intermediates.
+    /// 900 operations (387 additions, 502 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 904 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8505,398 +8229,404 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t18 = t10 - t15;
+        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t32 = t31 + c_distal_leg1;
-        let t33 = 0.7071067811865475 * t32;
-        let t34 = 1.0 / c_distal_leg1;
-        let gproximal_wz_leg1 = t33 * t34;
-        let t37 = t13 - t4;
+        let c_proximal_leg1 = 0.25 * (t18 * t18) / (0.5 * (c_distal_leg1 * t18));
+        let t27 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t28 = t27 + c_distal_leg1;
+        let t29 = 0.7071067811865475 * t28;
+        let t30 = 1.0 / c_distal_leg1;
+        let gproximal_wz_leg1 = t29 * t30;
+        let t33 = 0.7071067811865475 * (t27 - c_distal_leg1);
+        let t35 = pose[2] * t6;
+        let t36 = pose[0] * t3;
+        let t37 = t35 + t36;
         let t38 = pose[3] * t0;
         let t39 = pose[0] * t6;
         let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
-        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = t41 - t43;
-        let c_proximal_leg2 = t54 * (0.25 * (t55 * t55));
-        let t59 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t60 = t59 + c_distal_leg2;
-        let t61 = 0.7071067811865475 * t60;
-        let t62 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t61 * t62;
-        let t66 = t11 + t14;
-        let t67 = t5 + t9;
-        let t68 = t66 - t67;
-        let s_distal_leg3 = 0.5 * t68;
-        let t72 = 1.0 - 0.25 * (t68 * t68);
-        ::overact::guard::reach(t72, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t72);
-        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t78 = 1.0 / (0.5 * (t67 * c_distal_leg3 + t66 * c_distal_leg3));
-        let t79 = t67 + t66;
-        let c_proximal_leg3 = t78 * (0.25 * (t79 * t79));
-        let t83 = s_distal_leg3 * c_proximal_leg3;
-        let t84 = t83 - c_distal_leg3;
-        let t85 = 0.7071067811865475 * t84;
-        let t86 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wz_leg3 = t85 * t86;
-        let t90 = t42 + t14;
-        let t91 = t37 + t40;
-        let t92 = t90 - t91;
-        let s_distal_leg4 = 0.5 * t92;
-        let t96 = 1.0 - 0.25 * (t92 * t92);
-        ::overact::guard::reach(t96, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t96);
-        ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t102 = 1.0 / (0.5 * (t91 * c_distal_leg4 + t90 * c_distal_leg4));
-        let t103 = t91 + t90;
-        let c_proximal_leg4 = t102 * (0.25 * (t103 * t103));
-        let t107 = s_distal_leg4 * c_proximal_leg4;
-        let t108 = t107 - c_distal_leg4;
-        let t109 = 0.7071067811865475 * t108;
-        let t110 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wz_leg4 = t109 * t110;
-        let t115 = 0.7071067811865475 * (t83 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t115 * t86;
-        let t119 = 0.7071067811865475 * (t31 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t119 * t34;
-        let t122 = pose[2] * t6;
-        let t123 = pose[0] * t3;
-        let t124 = t122 - t123;
-        let t125 = t124 - t9;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * (t125 * t55));
-        let t129 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t129 * t62;
-        let t134 = t124 + t9;
-        let minus_s_proximal_leg4 = t102 * (0.35355339059327373 * (t134 * t103));
-        let t138 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t138 * t110;
-        let t141 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
-                + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t148 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t150 = t141 * t149;
-        let t153 = t122 + t123;
-        let t154 = t153 + t40;
-        let s_proximal_leg3 = t78 * (0.35355339059327373 * (t154 * t79));
-        let t158 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t158 * t86;
-        let t161 = t153 - t40;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t161 * t27));
-        let t165 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t165 * t34;
-        let t169 = 0.7071067811865475 * (t59 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t169 * t62;
-        let t175 = 0.7071067811865475 * (t107 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t175 * t110;
-        let t185 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t187 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
-                + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t185 * t150;
-        let t195 = t185 * t149;
-        let t197 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
-            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t185 * t195;
-        ::overact::guard::platform(t197, 0.9999999999999998, "actuators")?;
-        let t198 = 1.0 / t197;
-        let t199 = t187 * t198;
-        let t201 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t141 * t150
-            - t187 * t199;
-        ::overact::guard::platform(t201, 1.9999999999999996, "actuators")?;
+        let t42 = 0.7071067811865475 * (t37 - t40);
+        let s_proximal_leg1 = t30 * t42;
+        let t44 = minus_s_distal_leg1 * s_proximal_leg1;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t213 = minus_s_distal_leg1 * t34;
-        let t218 = t119 * twist[0] + t165 * twist[1] - t33 * twist[2];
-        let t219 = t213 * t218;
-        let t220 = rate_distal_leg1 * t219;
-        let rate_wrist_leg1 = t219 + 0.7071067811865475 * t10 * twist[0]
-            + 0.7071067811865475 * t161 * twist[1] + 0.7071067811865475 * t15 * twist[2];
-        let t232 = t119 * acceleration[0] + t165 * acceleration[1]
-            - t33 * acceleration[2] - (t220 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t34 * t232;
-        let minus_rate_proximal_leg1 = t34 * t218;
-        let t242 = 6.936717523440031 * s_proximal_leg1;
-        let t245 = 6.936717523440031 * c_proximal_leg1;
-        let t248 = parameters[6]
+        let t55 = minus_s_distal_leg1 * t30;
+        let t60 = t33 * twist[0] + t44 * twist[1] - t29 * twist[2];
+        let t61 = t55 * t60;
+        let t62 = rate_distal_leg1 * t61;
+        let rate_wrist_leg1 = t61 + 0.7071067811865475 * t10 * twist[0] + t42 * twist[1]
+            + 0.7071067811865475 * t15 * twist[2];
+        let t73 = t33 * acceleration[0] + t44 * acceleration[1] - t29 * acceleration[2]
+            - (t62 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t30 * t73;
+        let minus_rate_proximal_leg1 = t30 * t60;
+        let t83 = 6.936717523440031 * s_proximal_leg1;
+        let t89 = parameters[6]
             - (parameters[3] * minus_rate_dot_proximal_leg1
                 + parameters[4] * minus_rate_proximal_leg1
                 + ::overact::math::signed(parameters[5], minus_rate_proximal_leg1))
-            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t242
-                + parameters[2] * t245);
-        let t249 = t232 + t220;
-        let t251 = t218 * rate_distal_leg1;
-        let t252 = t213 * t232;
-        let t253 = t252 - t251;
-        let t257 = t218 * t219;
+            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t83
+                + parameters[2] * (6.936717523440031 * c_proximal_leg1));
+        let t90 = t73 + t62;
+        let t92 = t60 * rate_distal_leg1;
+        let t93 = t55 * t73;
+        let t94 = t93 - t92;
+        let t98 = t60 * t61;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t218 * rate_wrist_leg1;
-        let t270 = t219 * t219;
-        let t271 = rate_distal_leg1 * rate_distal_leg1;
-        let t274 = parameters[7] * t249 - parameters[8] * (t251 - t253)
-            + parameters[9] * (t257 + rate_dot_distal_leg1) - parameters[10] * t220
-            + parameters[11] * (t270 - t271);
-        let t281 = c_distal_leg1 * t245 - 3.4683587617200153 * t16;
-        let t289 = t218 * t218;
-        let t297 = parameters[7] * t251 + parameters[8] * (t220 + t249)
-            + parameters[9] * (t271 - t289) + parameters[10] * t253
-            - parameters[11] * (t257 - rate_dot_distal_leg1);
-        let t302 = 6.936717523440031 * t32;
-        let t306 = c_distal_leg1
-            * (t274 + parameters[12] * t220 + parameters[14] * t242
-                - parameters[15] * t281)
+            + minus_gdistal_wx_leg1 * acceleration[2] + t60 * rate_wrist_leg1;
+        let t111 = t61 * t61;
+        let t112 = rate_distal_leg1 * rate_distal_leg1;
+        let t115 = parameters[7] * t90 - parameters[8] * (t92 - t94)
+            + parameters[9] * (t98 + rate_dot_distal_leg1) - parameters[10] * t62
+            + parameters[11] * (t111 - t112);
+        let t120 = t15 * (-6.936717523440031);
+        let t128 = t60 * t60;
+        let t136 = parameters[7] * t92 + parameters[8] * (t62 + t90)
+            + parameters[9] * (t112 - t128) + parameters[10] * t94
+            - parameters[11] * (t98 - rate_dot_distal_leg1);
+        let t141 = 6.936717523440031 * t28;
+        let t145 = c_distal_leg1
+            * (t115 + parameters[12] * t62 + parameters[14] * t83
+                - parameters[15] * t120)
             + minus_s_distal_leg1
-                * (t297 - parameters[12] * t251 - parameters[13] * t242
-                    - parameters[15] * t302);
-        let t307 = t248 - t306;
-        let t318 = parameters[8] * (t289 - t270) - parameters[7] * t257
-            + parameters[9] * t232 + parameters[10] * t257 + parameters[11] * t252;
-        let t324 = t318 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t281
-            + parameters[14] * t302;
-        let t325 = minus_gdistal_wx_leg1 * t324;
-        let t327 = 6.936717523440031 * minus_s_proximal_leg2;
+                * (t136 - parameters[12] * t92 - parameters[13] * t83
+                    - parameters[15] * t141);
+        let t146 = t89 - t145;
+        let t157 = parameters[8] * (t128 - t111) - parameters[7] * t98
+            + parameters[9] * t73 + parameters[10] * t98 + parameters[11] * t93;
+        let t163 = t157 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t120
+            + parameters[14] * t141;
+        let t164 = minus_gdistal_wx_leg1 * t163;
+        let t166 = t13 - t4;
+        let t167 = t166 - t40;
+        let t168 = t38 + t39;
+        let t169 = t168 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t167 + t169);
+        let t172 = t167 - t169;
+        let t176 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t176, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t176);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let c_proximal_leg2 = 0.25 * (t172 * t172) / (0.5 * (c_distal_leg2 * t172));
+        let t181 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t182 = t181 + c_distal_leg2;
+        let t183 = 0.7071067811865475 * t182;
+        let t184 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t183 * t184;
+        let t186 = t35 - t36;
+        let t188 = 0.7071067811865475 * (t186 - t9);
+        let minus_s_proximal_leg2 = t184 * t188;
+        let t190 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t192 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let t195 = 0.7071067811865475 * (t181 - c_distal_leg2);
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t340 = minus_s_distal_leg2 * t62;
-        let t345 = t129 * twist[0] + t169 * twist[1] - t61 * twist[2];
-        let t346 = t340 * t345;
-        let t347 = rate_distal_leg2 * t346;
-        let rate_wrist_leg2 = t346 + 0.7071067811865475 * t125 * twist[0]
-            + 0.7071067811865475 * t41 * twist[1] + 0.7071067811865475 * t43 * twist[2];
-        let t359 = t129 * acceleration[0] + t169 * acceleration[1]
-            - t61 * acceleration[2] - (t347 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t62 * t359;
-        let t363 = 6.936717523440031 * c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t62 * t345;
-        let t373 = parameters[17] * t327 - parameters[16] * minus_rate_dot_proximal_leg2
-            - parameters[18] * t363 + parameters[22]
+        let t206 = minus_s_distal_leg2 * t184;
+        let t211 = t192 * twist[0] + t195 * twist[1] - t183 * twist[2];
+        let t212 = t206 * t211;
+        let t213 = rate_distal_leg2 * t212;
+        let rate_wrist_leg2 = t212 + t188 * twist[0]
+            + 0.7071067811865475 * t167 * twist[1]
+            + 0.7071067811865475 * t169 * twist[2];
+        let t224 = t192 * acceleration[0] + t195 * acceleration[1]
+            - t183 * acceleration[2] - (t213 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t184 * t224;
+        let minus_rate_proximal_leg2 = t184 * t211;
+        let t238 = parameters[17] * t190 - parameters[16] * minus_rate_dot_proximal_leg2
+            - parameters[18] * (6.936717523440031 * c_proximal_leg2) + parameters[22]
             - (parameters[19] * minus_rate_dot_proximal_leg2
                 + parameters[20] * minus_rate_proximal_leg2
                 + ::overact::math::signed(parameters[21], minus_rate_proximal_leg2));
-        let t374 = t359 + t347;
-        let t376 = t345 * rate_distal_leg2;
-        let t377 = t340 * t359;
-        let t378 = t377 - t376;
-        let t382 = t345 * t346;
+        let t239 = t224 + t213;
+        let t241 = t211 * rate_distal_leg2;
+        let t242 = t206 * t224;
+        let t243 = t242 - t241;
+        let t247 = t211 * t212;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t345 * rate_wrist_leg2;
-        let t395 = t346 * t346;
-        let t396 = rate_distal_leg2 * rate_distal_leg2;
-        let t399 = parameters[23] * t374 - parameters[24] * (t376 - t378)
-            + parameters[25] * (t382 + rate_dot_distal_leg2) - parameters[26] * t347
-            + parameters[27] * (t395 - t396);
-        let t406 = c_distal_leg2 * t363 - 3.4683587617200153 * t44;
-        let t414 = t345 * t345;
-        let t422 = parameters[23] * t376 + parameters[24] * (t347 + t374)
-            + parameters[25] * (t396 - t414) + parameters[26] * t378
-            - parameters[27] * (t382 - rate_dot_distal_leg2);
-        let t427 = 6.936717523440031 * t60;
-        let t431 = c_distal_leg2
-            * (t399 + parameters[28] * t347 - parameters[30] * t327
-                - parameters[31] * t406)
+            + t211 * rate_wrist_leg2;
+        let t260 = t212 * t212;
+        let t261 = rate_distal_leg2 * rate_distal_leg2;
+        let t264 = parameters[23] * t239 - parameters[24] * (t241 - t243)
+            + parameters[25] * (t247 + rate_dot_distal_leg2) - parameters[26] * t213
+            + parameters[27] * (t260 - t261);
+        let t269 = t169 * (-6.936717523440031);
+        let t277 = t211 * t211;
+        let t285 = parameters[23] * t241 + parameters[24] * (t213 + t239)
+            + parameters[25] * (t261 - t277) + parameters[26] * t243
+            - parameters[27] * (t247 - rate_dot_distal_leg2);
+        let t290 = 6.936717523440031 * t182;
+        let t294 = c_distal_leg2
+            * (t264 + parameters[28] * t213 - parameters[30] * t190
+                - parameters[31] * t269)
             + minus_s_distal_leg2
-                * (t422 - parameters[28] * t376 + parameters[29] * t327
-                    - parameters[31] * t427);
-        let t432 = t373 - t431;
-        let t443 = parameters[24] * (t414 - t395) - parameters[23] * t382
-            + parameters[25] * t359 + parameters[26] * t382 + parameters[27] * t377;
-        let t449 = t443 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t406
-            + parameters[30] * t427;
-        let t450 = gdistal_wy_leg2 * t449;
+                * (t285 - parameters[28] * t241 + parameters[29] * t190
+                    - parameters[31] * t290);
+        let t295 = t238 - t294;
+        let t306 = parameters[24] * (t277 - t260) - parameters[23] * t247
+            + parameters[25] * t224 + parameters[26] * t247 + parameters[27] * t242;
+        let t312 = t306 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t269
+            + parameters[30] * t290;
+        let t313 = gdistal_wy_leg2 * t312;
+        let t316 = t11 + t14;
+        let t317 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t316 - t317);
+        let t321 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t321, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t321);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let t323 = t317 + t316;
+        let t326 = 1.0 / (0.5 * (c_distal_leg3 * t323));
+        let s_proximal_leg3 = t326 * (0.35355339059327373 * ((t37 + t40) * t323));
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let t458 = t115 * twist[0] + t158 * twist[1] + t85 * twist[2];
-        let t459 = s_distal_leg3 * t86;
-        let t460 = t459 * t458;
-        let t461 = t458 * t460;
-        let t463 = t458 * t458;
-        let t464 = t460 * t460;
+        let c_proximal_leg3 = t326 * (0.25 * (t323 * t323));
+        let t335 = s_distal_leg3 * c_proximal_leg3;
+        let t337 = 0.7071067811865475 * (t335 + c_distal_leg3);
+        let t339 = s_distal_leg3 * s_proximal_leg3;
+        let t342 = t335 - c_distal_leg3;
+        let t343 = 0.7071067811865475 * t342;
+        let t345 = t337 * twist[0] + t339 * twist[1] + t343 * twist[2];
+        let t346 = 1.0 / c_distal_leg3;
+        let t347 = s_distal_leg3 * t346;
+        let t348 = t347 * t345;
+        let t349 = t345 * t348;
+        let t351 = t345 * t345;
+        let t352 = t348 * t348;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t478 = rate_distal_leg3 * t460;
-        let minus_rate_wrist_leg3 = t460 + 0.7071067811865475 * t67 * twist[0]
-            + 0.7071067811865475 * t154 * twist[1] + 0.7071067811865475 * t66 * twist[2];
-        let t490 = t115 * acceleration[0] + t158 * acceleration[1]
-            + t85 * acceleration[2] + t478 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let t495 = t459 * t490;
-        let t497 = parameters[39] * t461 + parameters[40] * (t463 - t464)
-            + parameters[41] * t490 - parameters[42] * t461 - parameters[43] * t495;
+        let t366 = rate_distal_leg3 * t348;
+        let t371 = t5 * twist[0] + t37 * twist[1] + t11 * twist[2];
+        let t376 = t9 * twist[0] + t40 * twist[1] + t14 * twist[2];
+        let minus_rate_wrist_leg3 = t348 + 0.7071067811865475 * (t371 + t376);
+        let t382 = t337 * acceleration[0] + t339 * acceleration[1]
+            + t343 * acceleration[2] + t366 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t387 = t347 * t382;
+        let t389 = parameters[39] * t349 + parameters[40] * (t351 - t352)
+            + parameters[41] * t382 - parameters[42] * t349 - parameters[43] * t387;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t458 * minus_rate_wrist_leg3;
-        let t507 = 6.936717523440031 * c_proximal_leg3;
-        let t510 = c_distal_leg3 * t507 + 3.4683587617200153 * t68;
-        let t513 = 6.936717523440031 * t84;
-        let t515 = t497 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t510
-            - parameters[46] * t513;
-        let t516 = gdistal_wx_leg3 * t515;
-        let minus_rate_dot_proximal_leg3 = t86 * t490;
-        let minus_rate_proximal_leg3 = t86 * t458;
-        let t526 = 6.936717523440031 * s_proximal_leg3;
-        let t531 = parameters[38]
+            - t345 * minus_rate_wrist_leg3;
+        let t399 = t316 * 6.936717523440031;
+        let t402 = 6.936717523440031 * t342;
+        let t404 = t389 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t399
+            - parameters[46] * t402;
+        let t405 = gdistal_wx_leg3 * t404;
+        let minus_gproximal_wz_leg3 = t343 * t346;
+        let minus_rate_dot_proximal_leg3 = t346 * t382;
+        let minus_rate_proximal_leg3 = t346 * t345;
+        let t416 = 6.936717523440031 * s_proximal_leg3;
+        let t422 = parameters[38]
             - (parameters[35] * minus_rate_dot_proximal_leg3
                 + parameters[36] * minus_rate_proximal_leg3
                 + ::overact::math::signed(parameters[37], minus_rate_proximal_leg3))
-            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t526
-                + parameters[34] * t507);
-        let t532 = t458 * rate_distal_leg3;
-        let t534 = t490 - t478;
-        let t538 = rate_distal_leg3 * rate_distal_leg3;
-        let t542 = t495 + t532;
-        let t547 = parameters[39] * t532 + parameters[40] * (t534 - t478)
-            + parameters[41] * (t538 - t463) - parameters[42] * t542
-            + parameters[43] * (t461 + rate_dot_distal_leg3);
-        let t566 = parameters[39] * t534 - parameters[40] * (t532 + t542)
-            + parameters[41] * (rate_dot_distal_leg3 - t461) + parameters[42] * t478
-            + parameters[43] * (t464 - t538);
-        let t574 = s_distal_leg3
-            * (t547 - parameters[44] * t532 - parameters[45] * t526
-                + parameters[47] * t513)
+            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t416
+                + parameters[34] * (6.936717523440031 * c_proximal_leg3));
+        let t423 = t345 * rate_distal_leg3;
+        let t425 = t382 - t366;
+        let t429 = rate_distal_leg3 * rate_distal_leg3;
+        let t433 = t387 + t423;
+        let t438 = parameters[39] * t423 + parameters[40] * (t425 - t366)
+            + parameters[41] * (t429 - t351) - parameters[42] * t433
+            + parameters[43] * (t349 + rate_dot_distal_leg3);
+        let t457 = parameters[39] * t425 - parameters[40] * (t423 + t433)
+            + parameters[41] * (rate_dot_distal_leg3 - t349) + parameters[42] * t366
+            + parameters[43] * (t352 - t429);
+        let t465 = s_distal_leg3
+            * (t438 - parameters[44] * t423 - parameters[45] * t416
+                + parameters[47] * t402)
             - c_distal_leg3
-                * (t566 - parameters[44] * t478 + parameters[46] * t526
-                    - parameters[47] * t510);
-        let t575 = t531 + t574;
-        let t579 = 6.936717523440031 * minus_s_proximal_leg4;
+                * (t457 - parameters[44] * t366 + parameters[46] * t416
+                    - parameters[47] * t399);
+        let t466 = t422 + t465;
+        let t470 = t168 + t14;
+        let t471 = t166 + t40;
+        let s_distal_leg4 = 0.5 * (t470 - t471);
+        let t475 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t475, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t475);
+        ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
+        let t477 = t471 + t470;
+        let t480 = 1.0 / (0.5 * (c_distal_leg4 * t477));
+        let c_proximal_leg4 = t480 * (0.25 * (t477 * t477));
+        let t484 = s_distal_leg4 * c_proximal_leg4;
+        let t485 = t484 - c_distal_leg4;
+        let t486 = 0.7071067811865475 * t485;
+        let t487 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wz_leg4 = t486 * t487;
+        let minus_s_proximal_leg4 = t480 * (0.35355339059327373 * ((t186 + t9) * t477));
+        let t493 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t495 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t498 = 0.7071067811865475 * (t484 + c_distal_leg4);
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t592 = s_distal_leg4 * t110;
-        let t597 = t138 * twist[0] + t175 * twist[1] + t109 * twist[2];
-        let t598 = t592 * t597;
-        let t599 = rate_distal_leg4 * t598;
-        let minus_rate_wrist_leg4 = t598 + 0.7071067811865475 * t134 * twist[0]
-            + 0.7071067811865475 * t91 * twist[1] + 0.7071067811865475 * t90 * twist[2];
-        let t611 = t138 * acceleration[0] + t175 * acceleration[1]
-            + t109 * acceleration[2] + t599 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t110 * t611;
-        let t615 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg4 = t110 * t597;
-        let t625 = parameters[49] * t579 - parameters[48] * minus_rate_dot_proximal_leg4
-            - parameters[50] * t615 + parameters[54]
+        let t509 = s_distal_leg4 * t487;
+        let t514 = t495 * twist[0] + t498 * twist[1] + t486 * twist[2];
+        let t515 = t509 * t514;
+        let t516 = rate_distal_leg4 * t515;
+        let t521 = t186 * twist[0] + t166 * twist[1] + t168 * twist[2];
+        let minus_rate_wrist_leg4 = t515 + 0.7071067811865475 * (t521 + t376);
+        let t527 = t495 * acceleration[0] + t498 * acceleration[1]
+            + t486 * acceleration[2] + t516 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t487 * t527;
+        let minus_rate_proximal_leg4 = t487 * t514;
+        let t541 = parameters[49] * t493 - parameters[48] * minus_rate_dot_proximal_leg4
+            - parameters[50] * (6.936717523440031 * c_proximal_leg4) + parameters[54]
             - (parameters[51] * minus_rate_dot_proximal_leg4
                 + parameters[52] * minus_rate_proximal_leg4
                 + ::overact::math::signed(parameters[53], minus_rate_proximal_leg4));
-        let t626 = t597 * rate_distal_leg4;
-        let t628 = t611 - t599;
-        let t632 = rate_distal_leg4 * rate_distal_leg4;
-        let t633 = t597 * t597;
-        let t637 = t592 * t611;
-        let t638 = t637 + t626;
-        let t641 = t597 * t598;
+        let t542 = t514 * rate_distal_leg4;
+        let t544 = t527 - t516;
+        let t548 = rate_distal_leg4 * rate_distal_leg4;
+        let t549 = t514 * t514;
+        let t553 = t509 * t527;
+        let t554 = t553 + t542;
+        let t557 = t514 * t515;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t597 * minus_rate_wrist_leg4;
-        let t651 = parameters[55] * t626 + parameters[56] * (t628 - t599)
-            + parameters[57] * (t632 - t633) - parameters[58] * t638
-            + parameters[59] * (t641 + rate_dot_distal_leg4);
-        let t656 = 6.936717523440031 * t108;
-        let t669 = t598 * t598;
-        let t672 = parameters[55] * t628 - parameters[56] * (t626 + t638)
-            + parameters[57] * (rate_dot_distal_leg4 - t641) + parameters[58] * t599
-            + parameters[59] * (t669 - t632);
-        let t679 = c_distal_leg4 * t615 + 3.4683587617200153 * t92;
-        let t683 = s_distal_leg4
-            * (t651 - parameters[60] * t626 + parameters[61] * t579
-                + parameters[63] * t656)
+            - minus_gdistal_wy_leg4 * acceleration[2] - t514 * minus_rate_wrist_leg4;
+        let t567 = parameters[55] * t542 + parameters[56] * (t544 - t516)
+            + parameters[57] * (t548 - t549) - parameters[58] * t554
+            + parameters[59] * (t557 + rate_dot_distal_leg4);
+        let t572 = 6.936717523440031 * t485;
+        let t585 = t515 * t515;
+        let t588 = parameters[55] * t544 - parameters[56] * (t542 + t554)
+            + parameters[57] * (rate_dot_distal_leg4 - t557) + parameters[58] * t516
+            + parameters[59] * (t585 - t548);
+        let t593 = t470 * 6.936717523440031;
+        let t597 = s_distal_leg4
+            * (t567 - parameters[60] * t542 + parameters[61] * t493
+                + parameters[63] * t572)
             - c_distal_leg4
-                * (t672 - parameters[60] * t599 - parameters[62] * t579
-                    - parameters[63] * t679);
-        let t684 = t625 + t683;
-        let t695 = parameters[55] * t641 + parameters[56] * (t633 - t669)
-            + parameters[57] * t611 - parameters[58] * t641 - parameters[59] * t637;
-        let t701 = t695 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t679
-            - parameters[62] * t656;
-        let t702 = minus_gdistal_wy_leg4 * t701;
-        let t704 = gproximal_wz_leg1 * t307 + t325 + gproximal_wz_leg2 * t432 - t450
-            + t516 - minus_gproximal_wz_leg3 * t575
-            - (minus_gproximal_wz_leg4 * t684 + t702);
-        let t709 = t5 * acceleration[0] + t153 * acceleration[1] + t11 * acceleration[2];
-        let t715 = t5 * twist[0] + t153 * twist[1] + t11 * twist[2];
-        let t720 = t9 * twist[0] + t40 * twist[1] + t14 * twist[2];
-        let t721 = t715 * t720;
-        let t726 = t124 * acceleration[0] + t37 * acceleration[1]
-            + t42 * acceleration[2];
-        let t734 = t124 * twist[0] + t37 * twist[1] + t42 * twist[2];
-        let t735 = t715 * t734;
-        let t740 = t9 * acceleration[0] + t40 * acceleration[1] + t14 * acceleration[2];
-        let t744 = t734 * t720;
-        let t747 = t734 * t734;
-        let t748 = t720 * t720;
-        let t751 = parameters[64] * t709 - parameters[65] * (t721 - t726)
-            + parameters[66] * (t735 + t740) - parameters[67] * t744
-            + parameters[68] * (t747 - t748);
-        let t754 = 9.81 * t14;
-        let t757 = 9.81 * t42;
-        let t759 = t751 + parameters[69] * t744 + parameters[71] * t754
-            - parameters[72] * t757;
-        let t765 = t715 * t715;
-        let t773 = parameters[64] * t721 + parameters[65] * (t744 + t709)
-            + parameters[66] * (t748 - t765) + parameters[67] * t726
-            - parameters[68] * (t735 - t740);
-        let t778 = 9.81 * t11;
-        let t780 = t773 - parameters[69] * t721 - parameters[70] * t754
-            + parameters[72] * t778;
-        let t794 = parameters[65] * (t765 - t747) - parameters[64] * t735
-            - parameters[66] * (t744 - t709) + parameters[67] * t735
-            + parameters[68] * (t721 + t726);
-        let t800 = t794 + parameters[69] * t740 + parameters[70] * t757
-            - parameters[71] * t778;
-        let t816 = t516 - minus_gproximal_wx_leg3 * t575
-            - (minus_gproximal_wx_leg1 * t307 + t325 + minus_gproximal_wx_leg2 * t432
-                + c_proximal_leg2 * t449) + c_proximal_leg4 * t701
-            - minus_gproximal_wx_leg4 * t684;
-        let t822 = t816 + t5 * t759 + t124 * t780 + t9 * t800;
-        let t834 = c_proximal_leg1 * t324 - minus_gproximal_wy_leg1 * t307 + t450
-            - minus_gproximal_wy_leg2 * t432
-            - (minus_gproximal_wy_leg3 * t575 + c_proximal_leg3 * t515);
-        let t845 = t834 - (minus_gproximal_wy_leg4 * t684 + t702) + t153 * t759
-            + t37 * t780 + t40 * t800 - t822 * t195;
-        let t847 = t704 + t11 * t759 + t42 * t780 + t14 * t800 - t822 * t150
-            - t199 * t845;
-        let t848 = t847 / t201;
-        let t853 = t198 * t845 - t199 * t848;
-        let t857 = t822 * t149 - t195 * t853 - t150 * t848;
+                * (t588 - parameters[60] * t516 - parameters[62] * t493
+                    - parameters[63] * t593);
+        let t598 = t541 + t597;
+        let t609 = parameters[55] * t557 + parameters[56] * (t549 - t585)
+            + parameters[57] * t527 - parameters[58] * t557 - parameters[59] * t553;
+        let t615 = t609 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t593
+            - parameters[62] * t572;
+        let t616 = minus_gdistal_wy_leg4 * t615;
+        let t618 = gproximal_wz_leg1 * t146 + t164 + gproximal_wz_leg2 * t295 - t313
+            + t405 - minus_gproximal_wz_leg3 * t466
+            - (minus_gproximal_wz_leg4 * t598 + t616);
+        let t623 = t5 * acceleration[0] + t37 * acceleration[1] + t11 * acceleration[2];
+        let t625 = t371 * t376;
+        let t626 = t168 * t625;
+        let t628 = t371 * t521;
+        let t629 = t14 * t628;
+        let t636 = t186 * acceleration[0] + t166 * acceleration[1]
+            + t168 * acceleration[2];
+        let t637 = t636 - t625;
+        let t639 = t521 * t376;
+        let t640 = t623 + t639;
+        let t643 = t371 * t371;
+        let t644 = t521 * t521;
+        let t645 = t643 - t644;
+        let t649 = parameters[64] * (t11 * t623 + t626 - t629)
+            + parameters[65] * (t11 * t637 + t168 * t640 + t14 * t645);
+        let t654 = t9 * acceleration[0] + t40 * acceleration[1] + t14 * acceleration[2];
+        let t655 = t654 + t628;
+        let t657 = t376 * t376;
+        let t658 = t657 - t643;
+        let t661 = t623 - t639;
+        let t667 = t11 * t639;
+        let t671 = t649 + parameters[66] * (t11 * t655 + t168 * t658 + t14 * t661)
+            + parameters[67] * (t168 * t636 - t667 + t629);
+        let t672 = t644 - t657;
+        let t674 = t654 - t628;
+        let t677 = t636 + t625;
+        let t686 = t671 + parameters[68] * (t11 * t672 + t168 * t674 + t14 * t677)
+            + parameters[69] * (t667 - t626 + t14 * t654);
+        let minus_gproximal_wx_leg3 = t337 * t346;
+        let minus_gproximal_wx_leg1 = t33 * t30;
+        let minus_gproximal_wx_leg2 = t192 * t184;
+        let minus_gproximal_wx_leg4 = t495 * t487;
+        let t704 = t405 - minus_gproximal_wx_leg3 * t466
+            - (minus_gproximal_wx_leg1 * t146 + t164 + minus_gproximal_wx_leg2 * t295
+                + c_proximal_leg2 * t312) + c_proximal_leg4 * t615
+            - minus_gproximal_wx_leg4 * t598;
+        let t706 = t186 * t625;
+        let t708 = t9 * t628;
+        let t717 = parameters[64] * (t5 * t623 + t706 - t708)
+            + parameters[65] * (t5 * t637 + t186 * t640 + t9 * t645);
+        let t726 = t5 * t639;
+        let t730 = t717 + parameters[66] * (t5 * t655 + t186 * t658 + t9 * t661)
+            + parameters[67] * (t186 * t636 - t726 + t708);
+        let t742 = t730 + parameters[68] * (t5 * t672 + t186 * t674 + t9 * t677)
+            + parameters[69] * (t726 - t706 + t9 * t654);
+        let t752 = t704 + t742 + parameters[70] * (9.81 * t37)
+            + parameters[71] * (9.81 * t166) + parameters[72] * (9.81 * t40);
+        let t759 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+            - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
+                + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
+            + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
+        let t766 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t766, 0.9999999999999998, "actuators")?;
+        let t767 = 1.0 / t766;
+        let t768 = t759 * t767;
+        let minus_gproximal_wy_leg3 = t339 * t346;
+        let minus_gproximal_wy_leg1 = t44 * t30;
+        let minus_gproximal_wy_leg2 = t195 * t184;
+        let minus_gproximal_wy_leg4 = t498 * t487;
+        let t788 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t790 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+            - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
+                + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t788 * t768;
+        let t798 = t788 * t767;
+        let t800 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t788 * t798;
+        ::overact::guard::platform(t800, 0.9999999999999998, "actuators")?;
+        let t801 = 1.0 / t800;
+        let t802 = t790 * t801;
+        let t812 = c_proximal_leg1 * t163 - minus_gproximal_wy_leg1 * t146 + t313
+            - minus_gproximal_wy_leg2 * t295
+            - (minus_gproximal_wy_leg3 * t466 + c_proximal_leg3 * t404);
+        let t817 = t166 * t625;
+        let t819 = t40 * t628;
+        let t828 = parameters[64] * (t37 * t623 + t817 - t819)
+            + parameters[65] * (t37 * t637 + t166 * t640 + t40 * t645);
+        let t837 = t37 * t639;
+        let t841 = t828 + parameters[66] * (t37 * t655 + t166 * t658 + t40 * t661)
+            + parameters[67] * (t166 * t636 - t837 + t819);
+        let t853 = t841 + parameters[68] * (t37 * t672 + t166 * t674 + t40 * t677)
+            + parameters[69] * (t837 - t817 + t40 * t654);
+        let t863 = t812 - (minus_gproximal_wy_leg4 * t598 + t616) + t853
+            - parameters[70] * (9.81 * t5) - parameters[71] * (9.81 * t186)
+            - parameters[72] * (9.81 * t9);
+        let t865 = t863 - t752 * t798;
+        let t878 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + gproximal_wz_leg2 * gproximal_wz_leg2
+            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t759 * t768
+            - t790 * t802;
+        ::overact::guard::platform(t878, 1.9999999999999996, "actuators")?;
+        let t879 = (t618 + t686 - t752 * t768 - t802 * t865) / t878;
+        let t884 = t801 * t865 - t802 * t879;
+        let t888 = t752 * t767 - t798 * t884 - t768 * t879;
         Ok([
-            gproximal_wz_leg1 * t848
-                - (minus_gproximal_wx_leg1 * t857 + minus_gproximal_wy_leg1 * t853),
-            gproximal_wz_leg2 * t848
-                - (minus_gproximal_wx_leg2 * t857 + minus_gproximal_wy_leg2 * t853),
-            -(minus_gproximal_wx_leg3 * t857 + minus_gproximal_wy_leg3 * t853
-                + minus_gproximal_wz_leg3 * t848),
-            -(minus_gproximal_wx_leg4 * t857 + minus_gproximal_wy_leg4 * t853
-                + minus_gproximal_wz_leg4 * t848),
+            gproximal_wz_leg1 * t879
+                - (minus_gproximal_wx_leg1 * t888 + minus_gproximal_wy_leg1 * t884),
+            gproximal_wz_leg2 * t879
+                - (minus_gproximal_wx_leg2 * t888 + minus_gproximal_wy_leg2 * t884),
+            -(minus_gproximal_wx_leg3 * t888 + minus_gproximal_wy_leg3 * t884
+                + minus_gproximal_wz_leg3 * t879),
+            -(minus_gproximal_wx_leg4 * t888 + minus_gproximal_wy_leg4 * t884
+                + minus_gproximal_wz_leg4 * t879),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8910,7 +8640,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 789 operations (343 additions, 439 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 4 signs, 805 intermediates.
+    /// 858 operations (373 additions, 478 multiplications, 7 divisions), 0 square roots, 8 trigonometric pairs, 4 signs, 874 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9200,112 +8930,131 @@ impl Spherical4Rrr {
         let t566 = t564 - t565;
         let t568 = t556 * acceleration[0] + t561 * acceleration[1]
             + t566 * acceleration[2];
-        let t574 = t556 * twist[0] + t561 * twist[1] + t566 * twist[2];
-        let t575 = t564 + t565;
-        let t577 = pose[3] * t551;
-        let t578 = pose[0] * t558;
-        let t579 = t577 - t578;
-        let t583 = 1.0 - pose[1] * t558;
-        let t584 = t583 - t552;
-        let t586 = t575 * twist[0] + t579 * twist[1] + t584 * twist[2];
-        let t587 = t574 * t586;
-        let t588 = t559 - t560;
-        let t590 = t583 - t555;
-        let t593 = t577 + t578;
-        let t595 = t588 * acceleration[0] + t590 * acceleration[1]
-            + t593 * acceleration[2];
-        let t603 = t588 * twist[0] + t590 * twist[1] + t593 * twist[2];
-        let t604 = t574 * t603;
-        let t609 = t575 * acceleration[0] + t579 * acceleration[1]
-            + t584 * acceleration[2];
-        let t613 = t603 * t586;
-        let t616 = t603 * t603;
-        let t617 = t586 * t586;
-        let t620 = parameters[64] * t568 - parameters[65] * (t587 - t595)
-            + parameters[66] * (t604 + t609) - parameters[67] * t613
-            + parameters[68] * (t616 - t617);
-        let t623 = 9.81 * t584;
-        let t626 = 9.81 * t593;
-        let t628 = t620 + parameters[69] * t613 + parameters[71] * t623
-            - parameters[72] * t626;
-        let t634 = t574 * t574;
-        let t642 = parameters[64] * t587 + parameters[65] * (t613 + t568)
-            + parameters[66] * (t617 - t634) + parameters[67] * t595
-            - parameters[68] * (t604 - t609);
-        let t647 = 9.81 * t566;
-        let t649 = t642 - parameters[69] * t587 - parameters[70] * t623
-            + parameters[72] * t647;
-        let t663 = parameters[65] * (t634 - t616) - parameters[64] * t604
-            - parameters[66] * (t613 - t568) + parameters[67] * t604
-            + parameters[68] * (t587 + t595);
-        let t669 = t663 + parameters[69] * t609 + parameters[70] * t626
-            - parameters[71] * t647;
-        let t672 = t550 + t556 * t628 + t588 * t649 + t575 * t669;
-        let t679 = gproximal_wx_leg1 * gproximal_wx_leg1
+        let t570 = t559 - t560;
+        let t575 = t556 * twist[0] + t561 * twist[1] + t566 * twist[2];
+        let t576 = t564 + t565;
+        let t578 = pose[3] * t551;
+        let t579 = pose[0] * t558;
+        let t580 = t578 - t579;
+        let t584 = 1.0 - pose[1] * t558;
+        let t585 = t584 - t552;
+        let t587 = t576 * twist[0] + t580 * twist[1] + t585 * twist[2];
+        let t588 = t575 * t587;
+        let t589 = t570 * t588;
+        let t592 = t584 - t555;
+        let t595 = t578 + t579;
+        let t597 = t570 * twist[0] + t592 * twist[1] + t595 * twist[2];
+        let t598 = t575 * t597;
+        let t599 = t576 * t598;
+        let t606 = t570 * acceleration[0] + t592 * acceleration[1]
+            + t595 * acceleration[2];
+        let t607 = t606 - t588;
+        let t609 = t597 * t587;
+        let t610 = t568 + t609;
+        let t613 = t575 * t575;
+        let t614 = t597 * t597;
+        let t615 = t613 - t614;
+        let t619 = parameters[64] * (t556 * t568 + t589 - t599)
+            + parameters[65] * (t556 * t607 + t570 * t610 + t576 * t615);
+        let t624 = t576 * acceleration[0] + t580 * acceleration[1]
+            + t585 * acceleration[2];
+        let t625 = t624 + t598;
+        let t627 = t587 * t587;
+        let t628 = t627 - t613;
+        let t631 = t568 - t609;
+        let t637 = t556 * t609;
+        let t641 = t619 + parameters[66] * (t556 * t625 + t570 * t628 + t576 * t631)
+            + parameters[67] * (t570 * t606 - t637 + t599);
+        let t642 = t614 - t627;
+        let t644 = t624 - t598;
+        let t647 = t606 + t588;
+        let t656 = t641 + parameters[68] * (t556 * t642 + t570 * t644 + t576 * t647)
+            + parameters[69] * (t637 - t589 + t576 * t624);
+        let t666 = t550 + t656 + parameters[70] * (9.81 * t561)
+            + parameters[71] * (9.81 * t592) + parameters[72] * (9.81 * t580);
+        let t673 = gproximal_wx_leg1 * gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + gproximal_wx_leg4 * gproximal_wx_leg4;
-        ::overact::guard::platform(t679, 1.0000000000000002, "actuators")?;
-        let t680 = 1.0 / t679;
+        ::overact::guard::platform(t673, 1.0000000000000002, "actuators")?;
+        let t674 = 1.0 / t673;
         let gproximal_wy_leg1 = t13 * t8;
         let gproximal_wy_leg2 = t148 * t142;
         let minus_gproximal_wy_leg3 = t285 * t291;
         let minus_gproximal_wy_leg4 = t423 * t418;
-        let t692 = gproximal_wx_leg1 * gproximal_wy_leg1
+        let t686 = gproximal_wx_leg1 * gproximal_wy_leg1
             - minus_gproximal_wx_leg2 * gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t693 = t692 * t680;
-        let t702 = gproximal_wy_leg1 * gproximal_wy_leg1
+        let t687 = t686 * t674;
+        let t696 = gproximal_wy_leg1 * gproximal_wy_leg1
             + gproximal_wy_leg2 * gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t692 * t693;
-        ::overact::guard::platform(t702, 1.0000000000000002, "actuators")?;
-        let t703 = 1.0 / t702;
-        let t708 = minus_gdistal_wy_leg2 * t271;
-        let t714 = gproximal_wy_leg1 * t117 + minus_c_proximal_leg1 * t134
-            + gproximal_wy_leg2 * t254 - t708
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t686 * t687;
+        ::overact::guard::platform(t696, 1.0000000000000002, "actuators")?;
+        let t697 = 1.0 / t696;
+        let t702 = minus_gdistal_wy_leg2 * t271;
+        let t708 = gproximal_wy_leg1 * t117 + minus_c_proximal_leg1 * t134
+            + gproximal_wy_leg2 * t254 - t702
             - (minus_gproximal_wy_leg3 * t409 + minus_c_proximal_leg3 * t347);
-        let t715 = gdistal_wy_leg4 * t547;
-        let t726 = t714 + t715 - minus_gproximal_wy_leg4 * t530 + t561 * t628
-            + t590 * t649 + t579 * t669 - t672 * t693;
+        let t709 = gdistal_wy_leg4 * t547;
+        let t714 = t592 * t588;
+        let t716 = t580 * t598;
+        let t725 = parameters[64] * (t561 * t568 + t714 - t716)
+            + parameters[65] * (t561 * t607 + t592 * t610 + t580 * t615);
+        let t734 = t561 * t609;
+        let t738 = t725 + parameters[66] * (t561 * t625 + t592 * t628 + t580 * t631)
+            + parameters[67] * (t592 * t606 - t734 + t716);
+        let t750 = t738 + parameters[68] * (t561 * t642 + t592 * t644 + t580 * t647)
+            + parameters[69] * (t734 - t714 + t580 * t624);
+        let t760 = t708 + t709 - minus_gproximal_wy_leg4 * t530 + t750
+            - parameters[70] * (9.81 * t556) - parameters[71] * (9.81 * t570)
+            - parameters[72] * (9.81 * t576);
+        let t762 = t760 - t666 * t687;
         let minus_gproximal_wz_leg3 = t288 * t291;
         let minus_gproximal_wz_leg1 = t10 * t8;
         let minus_gproximal_wz_leg2 = t151 * t142;
         let minus_gproximal_wz_leg4 = t427 * t418;
-        let t745 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t781 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - gproximal_wx_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t746 = t745 * t680;
-        let t748 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t782 = t781 * t674;
+        let t784 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (gproximal_wy_leg1 * minus_gproximal_wz_leg1
                 + gproximal_wy_leg2 * minus_gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t692 * t746;
-        let t749 = t748 * t703;
-        let t760 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t686 * t782;
+        let t785 = t784 * t697;
+        let t796 = t135 - minus_gproximal_wz_leg1 * t117 + t702
+            - minus_gproximal_wz_leg2 * t254 + t348 - minus_gproximal_wz_leg3 * t409
+            + t709 - minus_gproximal_wz_leg4 * t530;
+        let t798 = t595 * t588;
+        let t800 = t585 * t598;
+        let t809 = parameters[64] * (t566 * t568 + t798 - t800)
+            + parameters[65] * (t566 * t607 + t595 * t610 + t585 * t615);
+        let t818 = t566 * t609;
+        let t822 = t809 + parameters[66] * (t566 * t625 + t595 * t628 + t585 * t631)
+            + parameters[67] * (t595 * t606 - t818 + t800);
+        let t834 = t822 + parameters[68] * (t566 * t642 + t595 * t644 + t585 * t647)
+            + parameters[69] * (t818 - t798 + t585 * t624);
+        let t850 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
             + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t745 * t746
-            - t748 * t749;
-        ::overact::guard::platform(t760, 2.0000000000000004, "actuators")?;
-        let t771 = t135 - minus_gproximal_wz_leg1 * t117 + t708
-            - minus_gproximal_wz_leg2 * t254 + t348 - minus_gproximal_wz_leg3 * t409
-            + t715 - minus_gproximal_wz_leg4 * t530;
-        let t781 = t771 + t566 * t628 + t593 * t649 + t584 * t669 - t672 * t746
-            - t749 * t726;
-        let t782 = t781 / t760;
-        let t784 = t703 * t726 - t749 * t782;
-        let t788 = t672 * t680 - t693 * t784 - t746 * t782;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t781 * t782
+            - t784 * t785;
+        ::overact::guard::platform(t850, 2.0000000000000004, "actuators")?;
+        let t851 = (t796 + t834 - t666 * t782 - t785 * t762) / t850;
+        let t853 = t697 * t762 - t785 * t851;
+        let t857 = t666 * t674 - t687 * t853 - t782 * t851;
         Ok([
-            gproximal_wx_leg1 * t788 + gproximal_wy_leg1 * t784
-                - minus_gproximal_wz_leg1 * t782,
-            gproximal_wy_leg2 * t784 - minus_gproximal_wx_leg2 * t788
-                - minus_gproximal_wz_leg2 * t782,
-            -(minus_gproximal_wx_leg3 * t788 + minus_gproximal_wy_leg3 * t784
-                + minus_gproximal_wz_leg3 * t782),
-            gproximal_wx_leg4 * t788 - minus_gproximal_wy_leg4 * t784
-                - minus_gproximal_wz_leg4 * t782,
+            gproximal_wx_leg1 * t857 + gproximal_wy_leg1 * t853
+                - minus_gproximal_wz_leg1 * t851,
+            gproximal_wy_leg2 * t853 - minus_gproximal_wx_leg2 * t857
+                - minus_gproximal_wz_leg2 * t851,
+            -(minus_gproximal_wx_leg3 * t857 + minus_gproximal_wy_leg3 * t853
+                + minus_gproximal_wz_leg3 * t851),
+            gproximal_wx_leg4 * t857 - minus_gproximal_wy_leg4 * t853
+                - minus_gproximal_wz_leg4 * t851,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -9319,7 +9068,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 950 operations (401 additions, 538 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 954 intermediates.
+    /// 977 operations (421 additions, 545 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 981 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9345,438 +9094,443 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t18 = t10 - t15;
+        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t32 = t31 + c_distal_leg1;
-        let t33 = 0.7071067811865475 * t32;
-        let t34 = 1.0 / c_distal_leg1;
-        let gproximal_wz_leg1 = t33 * t34;
-        let t37 = t13 - t4;
-        let t38 = pose[3] * t0;
-        let t39 = pose[0] * t6;
-        let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let c_proximal_leg1 = 0.25 * (t18 * t18) / (0.5 * (c_distal_leg1 * t18));
+        let t27 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t28 = t27 + c_distal_leg1;
+        let t29 = 0.7071067811865475 * t28;
+        let t30 = 1.0 / c_distal_leg1;
+        let gproximal_wz_leg1 = t29 * t30;
+        let t33 = t13 - t4;
+        let t34 = pose[3] * t0;
+        let t35 = pose[0] * t6;
+        let t36 = t34 - t35;
+        let t37 = t33 - t36;
+        let t38 = t34 + t35;
+        let t39 = t38 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t37 + t39);
+        let t42 = t37 - t39;
+        let t46 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t46, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = t41 - t43;
-        let c_proximal_leg2 = t54 * (0.25 * (t55 * t55));
-        let t59 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t60 = t59 + c_distal_leg2;
-        let t61 = 0.7071067811865475 * t60;
-        let t62 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t61 * t62;
-        let t66 = t11 + t14;
-        let t67 = t5 + t9;
-        let t68 = t66 - t67;
-        let s_distal_leg3 = 0.5 * t68;
-        let t72 = 1.0 - 0.25 * (t68 * t68);
-        ::overact::guard::reach(t72, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t72);
+        let c_proximal_leg2 = 0.25 * (t42 * t42) / (0.5 * (c_distal_leg2 * t42));
+        let t51 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t52 = t51 + c_distal_leg2;
+        let t53 = 0.7071067811865475 * t52;
+        let t54 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t53 * t54;
+        let t58 = t11 + t14;
+        let t59 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t58 - t59);
+        let t63 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t63, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t63);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t78 = 1.0 / (0.5 * (t67 * c_distal_leg3 + t66 * c_distal_leg3));
-        let t79 = t67 + t66;
-        let c_proximal_leg3 = t78 * (0.25 * (t79 * t79));
-        let t83 = s_distal_leg3 * c_proximal_leg3;
-        let t84 = t83 - c_distal_leg3;
-        let t85 = 0.7071067811865475 * t84;
-        let t86 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wz_leg3 = t85 * t86;
-        let t90 = t42 + t14;
-        let t91 = t37 + t40;
-        let t92 = t90 - t91;
-        let s_distal_leg4 = 0.5 * t92;
-        let t96 = 1.0 - 0.25 * (t92 * t92);
-        ::overact::guard::reach(t96, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t96);
+        let t65 = t59 + t58;
+        let t68 = 1.0 / (0.5 * (c_distal_leg3 * t65));
+        let c_proximal_leg3 = t68 * (0.25 * (t65 * t65));
+        let t72 = s_distal_leg3 * c_proximal_leg3;
+        let t73 = t72 - c_distal_leg3;
+        let t74 = 0.7071067811865475 * t73;
+        let t75 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wz_leg3 = t74 * t75;
+        let t79 = t38 + t14;
+        let t80 = t33 + t36;
+        let s_distal_leg4 = 0.5 * (t79 - t80);
+        let t84 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t84, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t84);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t102 = 1.0 / (0.5 * (t91 * c_distal_leg4 + t90 * c_distal_leg4));
-        let t103 = t91 + t90;
-        let c_proximal_leg4 = t102 * (0.25 * (t103 * t103));
-        let t107 = s_distal_leg4 * c_proximal_leg4;
-        let t108 = t107 - c_distal_leg4;
-        let t109 = 0.7071067811865475 * t108;
-        let t110 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wz_leg4 = t109 * t110;
-        let t115 = 0.7071067811865475 * (t83 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t115 * t86;
-        let t119 = 0.7071067811865475 * (t31 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t119 * t34;
-        let t122 = pose[2] * t6;
-        let t123 = pose[0] * t3;
-        let t124 = t122 - t123;
-        let t125 = t124 - t9;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * (t125 * t55));
-        let t129 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t129 * t62;
-        let t134 = t124 + t9;
-        let minus_s_proximal_leg4 = t102 * (0.35355339059327373 * (t134 * t103));
-        let t138 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t138 * t110;
-        let t141 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t86 = t80 + t79;
+        let t89 = 1.0 / (0.5 * (c_distal_leg4 * t86));
+        let c_proximal_leg4 = t89 * (0.25 * (t86 * t86));
+        let t93 = s_distal_leg4 * c_proximal_leg4;
+        let t94 = t93 - c_distal_leg4;
+        let t95 = 0.7071067811865475 * t94;
+        let t96 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wz_leg4 = t95 * t96;
+        let t101 = 0.7071067811865475 * (t72 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t101 * t75;
+        let t105 = 0.7071067811865475 * (t27 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t105 * t30;
+        let t108 = pose[2] * t6;
+        let t109 = pose[0] * t3;
+        let t110 = t108 - t109;
+        let t112 = 0.7071067811865475 * (t110 - t9);
+        let minus_s_proximal_leg2 = t54 * t112;
+        let t114 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t114 * t54;
+        let minus_s_proximal_leg4 = t89 * (0.35355339059327373 * ((t110 + t9) * t86));
+        let t123 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t123 * t96;
+        let t126 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t148 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t133 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t150 = t141 * t149;
-        let t153 = t122 + t123;
-        let t154 = t153 + t40;
-        let s_proximal_leg3 = t78 * (0.35355339059327373 * (t154 * t79));
-        let t158 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t158 * t86;
-        let t161 = t153 - t40;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t161 * t27));
-        let t165 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t165 * t34;
-        let t169 = 0.7071067811865475 * (t59 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t169 * t62;
-        let t175 = 0.7071067811865475 * (t107 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t175 * t110;
-        let t185 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t133, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t133, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t133, 0.9999999999999998, "actuators")?;
+        let t134 = 1.0 / t133;
+        let t135 = t126 * t134;
+        let t138 = t108 + t109;
+        let s_proximal_leg3 = t68 * (0.35355339059327373 * ((t138 + t36) * t65));
+        let t143 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t143 * t75;
+        let t147 = 0.7071067811865475 * (t138 - t36);
+        let s_proximal_leg1 = t30 * t147;
+        let t149 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t149 * t30;
+        let t153 = 0.7071067811865475 * (t51 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t153 * t54;
+        let t159 = 0.7071067811865475 * (t93 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t159 * t96;
+        let t169 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t187 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t171 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t185 * t150;
-        let t195 = t185 * t149;
-        let t197 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t169 * t135;
+        let t179 = t169 * t134;
+        let t181 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t185 * t195;
-        ::overact::guard::platform(t197, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t197, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t197, 0.9999999999999998, "actuators")?;
-        let t198 = 1.0 / t197;
-        let t199 = t187 * t198;
-        let t201 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t169 * t179;
+        ::overact::guard::platform(t181, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t181, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t181, 0.9999999999999998, "actuators")?;
+        let t182 = 1.0 / t181;
+        let t183 = t171 * t182;
+        let t185 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t141 * t150
-            - t187 * t199;
-        ::overact::guard::platform(t201, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t201, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t201, 1.9999999999999996, "actuators")?;
-        let t202 = 1.0 / t201;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t126 * t135
+            - t171 * t183;
+        ::overact::guard::platform(t185, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t185, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t185, 1.9999999999999996, "actuators")?;
+        let t186 = 1.0 / t185;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t210 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t194 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t220 = t210 * t195
+        let t204 = t194 * t179
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t232 = gproximal_wz_leg1 * actuator_velocities[0]
+        let t216 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t210 * t150
-            - t199 * t220;
-        let t233 = t202 * t232;
-        let t235 = t198 * t220 - t199 * t233;
-        let t239 = t210 * t149 + t195 * t235 + t150 * t233;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t239 + c_proximal_leg1 * t235
-            + minus_gdistal_wx_leg1 * t233;
-        let t250 = t165 * t235 - t119 * t239 - t33 * t233;
-        let t251 = minus_s_distal_leg1 * t34 * t250;
-        let t252 = rate_distal_leg1 * t251;
-        let minus_rate_wrist_leg1 = 0.7071067811865475 * t10 * t239
-            - 0.7071067811865475 * t161 * t235 - 0.7071067811865475 * t15 * t233 - t251;
-        let t263 = t252 - rate_distal_leg1 * minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t34 * t263;
-        let t265 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t194 * t135
+            - t183 * t204;
+        let t217 = t186 * t216;
+        let t219 = t182 * t204 - t183 * t217;
+        let t223 = t194 * t134 + t179 * t219 + t135 * t217;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t223 + c_proximal_leg1 * t219
+            + minus_gdistal_wx_leg1 * t217;
+        let t233 = t149 * t219 - t105 * t223 - t29 * t217;
+        let minus_rate_proximal_leg1 = t30 * t233;
+        let t235 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t236 = rate_distal_leg1 * t235;
+        let minus_rate_wrist_leg1 = 0.7071067811865475 * t10 * t223 - t147 * t219
+            - 0.7071067811865475 * t15 * t217 - t235;
+        let t246 = t236 - rate_distal_leg1 * minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t30 * t246;
+        let t248 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t239 + gdistal_wy_leg2 * t235
-            - gdistal_wy_leg2 * t233;
-        let t278 = t169 * t235 - t129 * t239 - t61 * t233;
-        let t279 = minus_s_distal_leg2 * t62 * t278;
-        let t280 = rate_distal_leg2 * t279;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * t125 * t239
-            - 0.7071067811865475 * t41 * t235 - 0.7071067811865475 * t43 * t233 - t279;
-        let t291 = t280 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t62 * t291;
-        let t293 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t223 + gdistal_wy_leg2 * t219
+            - gdistal_wy_leg2 * t217;
+        let t260 = t153 * t219 - t114 * t223 - t53 * t217;
+        let minus_rate_proximal_leg2 = t54 * t260;
+        let t262 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t263 = rate_distal_leg2 * t262;
+        let minus_rate_wrist_leg2 = t112 * t223 - 0.7071067811865475 * t37 * t219
+            - 0.7071067811865475 * t39 * t217 - t262;
+        let t273 = t263 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t54 * t273;
+        let t275 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t233
-            - (gdistal_wx_leg3 * t239 + c_proximal_leg3 * t235);
-        let t307 = t158 * t235 - t115 * t239 + t85 * t233;
-        let t308 = s_distal_leg3 * t86 * t307;
-        let t309 = rate_distal_leg3 * t308;
-        let minus_rate_wrist_leg3 = t308 + 0.7071067811865475 * t154 * t235
-            - 0.7071067811865475 * t67 * t239 + 0.7071067811865475 * t66 * t233;
-        let t320 = t309 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t86 * t320;
-        let t322 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t217
+            - (gdistal_wx_leg3 * t223 + c_proximal_leg3 * t219);
+        let t288 = t143 * t219 - t101 * t223 + t74 * t217;
+        let minus_rate_proximal_leg3 = t75 * t288;
+        let t290 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t291 = rate_distal_leg3 * t290;
+        let t296 = t138 * t219 - t5 * t223 + t11 * t217;
+        let t301 = t36 * t219 - t9 * t223 + t14 * t217;
+        let minus_rate_wrist_leg3 = t290 + 0.7071067811865475 * (t296 + t301);
+        let t306 = t291 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t75 * t306;
+        let t308 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t239
-            + minus_gdistal_wy_leg4 * t235 + minus_gdistal_wy_leg4 * t233;
-        let t336 = t175 * t235 - t138 * t239 + t109 * t233;
-        let t337 = s_distal_leg4 * t110 * t336;
-        let t338 = minus_rate_distal_leg4 * t337;
-        let minus_rate_wrist_leg4 = t337 + 0.7071067811865475 * t91 * t235
-            - 0.7071067811865475 * t134 * t239 + 0.7071067811865475 * t90 * t233;
-        let t349 = t338 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t110 * t349;
-        let t351 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t353 = minus_gproximal_wx_leg1 * t265 + minus_gproximal_wx_leg2 * t293
-            + minus_gproximal_wx_leg3 * t322 + minus_gproximal_wx_leg4 * t351;
-        let t362 = t195 * t353
-            - (minus_gproximal_wy_leg1 * t265 + minus_gproximal_wy_leg2 * t293
-                + minus_gproximal_wy_leg3 * t322 + minus_gproximal_wy_leg4 * t351);
-        let t374 = gproximal_wz_leg1 * t265 + gproximal_wz_leg2 * t293
-            - minus_gproximal_wz_leg3 * t322 - minus_gproximal_wz_leg4 * t351
-            + t150 * t353 - t199 * t362;
-        let t375 = t202 * t374;
-        let t377 = t198 * t362 - t199 * t375;
-        let t383 = t149 * t353 + t195 * t377 + t150 * t375;
-        let t388 = t165 * t377 - t119 * t383 - t33 * t375 - t263;
-        let minus_rate_dot_proximal_leg1 = t34 * t388;
-        let minus_rate_proximal_leg1 = t34 * t250;
-        let t398 = 6.936717523440031 * s_proximal_leg1;
-        let t401 = 6.936717523440031 * c_proximal_leg1;
-        let t404 = parameters[6]
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t223
+            + minus_gdistal_wy_leg4 * t219 + minus_gdistal_wy_leg4 * t217;
+        let t321 = t159 * t219 - t123 * t223 + t95 * t217;
+        let minus_rate_proximal_leg4 = t96 * t321;
+        let t323 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t324 = minus_rate_distal_leg4 * t323;
+        let t329 = t33 * t219 - t110 * t223 + t38 * t217;
+        let minus_rate_wrist_leg4 = t323 + 0.7071067811865475 * (t329 + t301);
+        let t334 = t324 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t96 * t334;
+        let t336 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t338 = minus_gproximal_wx_leg1 * t248 + minus_gproximal_wx_leg2 * t275
+            + minus_gproximal_wx_leg3 * t308 + minus_gproximal_wx_leg4 * t336;
+        let t347 = t179 * t338
+            - (minus_gproximal_wy_leg1 * t248 + minus_gproximal_wy_leg2 * t275
+                + minus_gproximal_wy_leg3 * t308 + minus_gproximal_wy_leg4 * t336);
+        let t359 = gproximal_wz_leg1 * t248 + gproximal_wz_leg2 * t275
+            - minus_gproximal_wz_leg3 * t308 - minus_gproximal_wz_leg4 * t336
+            + t135 * t338 - t183 * t347;
+        let t360 = t186 * t359;
+        let t362 = t182 * t347 - t183 * t360;
+        let t368 = t134 * t338 + t179 * t362 + t135 * t360;
+        let t373 = t149 * t362 - t105 * t368 - t29 * t360 - t246;
+        let minus_rate_dot_proximal_leg1 = t30 * t373;
+        let t382 = 6.936717523440031 * s_proximal_leg1;
+        let t388 = parameters[6]
             - (parameters[3] * minus_rate_dot_proximal_leg1
                 + minus_rate_proximal_leg1 * parameters[4]
                 + ::overact::math::signed(parameters[5], minus_rate_proximal_leg1))
-            - (parameters[0] * minus_rate_dot_proximal_leg1 + t398 * parameters[1]
-                + t401 * parameters[2]);
-        let t405 = t388 + t252;
-        let t407 = t250 * rate_distal_leg1;
-        let t408 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t409 = t408 - t407;
-        let t413 = t250 * t251;
-        let minus_rate_dot_distal_leg1 = t250 * minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t383 + c_proximal_leg1 * t377
-            + minus_gdistal_wx_leg1 * t375 - minus_rate_dot_distal_leg1;
-        let t426 = t251 * t251;
-        let t427 = rate_distal_leg1 * rate_distal_leg1;
-        let t430 = parameters[7] * t405 - parameters[8] * (t407 - t409)
-            + parameters[9] * (t413 + rate_dot_distal_leg1) - t252 * parameters[10]
-            + parameters[11] * (t426 - t427);
-        let t437 = c_distal_leg1 * t401 - 3.4683587617200153 * t16;
-        let t445 = t250 * t250;
-        let t453 = t407 * parameters[7] + parameters[8] * (t252 + t405)
-            + parameters[9] * (t427 - t445) + parameters[10] * t409
-            - parameters[11] * (t413 - rate_dot_distal_leg1);
-        let t458 = 6.936717523440031 * t32;
-        let t462 = c_distal_leg1
-            * (t430 + t252 * parameters[12] + t398 * parameters[14]
-                - t437 * parameters[15])
+            - (parameters[0] * minus_rate_dot_proximal_leg1 + t382 * parameters[1]
+                + 6.936717523440031 * c_proximal_leg1 * parameters[2]);
+        let t389 = t373 + t236;
+        let t391 = t233 * rate_distal_leg1;
+        let t392 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t393 = t392 - t391;
+        let t397 = t233 * t235;
+        let minus_rate_dot_distal_leg1 = t233 * minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t368 + c_proximal_leg1 * t362
+            + minus_gdistal_wx_leg1 * t360 - minus_rate_dot_distal_leg1;
+        let t410 = t235 * t235;
+        let t411 = rate_distal_leg1 * rate_distal_leg1;
+        let t414 = parameters[7] * t389 - parameters[8] * (t391 - t393)
+            + parameters[9] * (t397 + rate_dot_distal_leg1) - t236 * parameters[10]
+            + parameters[11] * (t410 - t411);
+        let t419 = t15 * (-6.936717523440031);
+        let t427 = t233 * t233;
+        let t435 = t391 * parameters[7] + parameters[8] * (t236 + t389)
+            + parameters[9] * (t411 - t427) + parameters[10] * t393
+            - parameters[11] * (t397 - rate_dot_distal_leg1);
+        let t440 = 6.936717523440031 * t28;
+        let t444 = c_distal_leg1
+            * (t414 + t236 * parameters[12] + t382 * parameters[14]
+                - t419 * parameters[15])
             + minus_s_distal_leg1
-                * (t453 - t407 * parameters[12] - t398 * parameters[13]
-                    - t458 * parameters[15]);
-        let t463 = t404 - t462;
-        let t474 = parameters[8] * (t445 - t426) - t413 * parameters[7]
-            + parameters[9] * t388 + t413 * parameters[10] + parameters[11] * t408;
-        let t480 = t474 + parameters[12] * rate_dot_distal_leg1 + t437 * parameters[13]
-            + t458 * parameters[14];
-        let t481 = minus_gdistal_wx_leg1 * t480;
-        let t483 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t490 = t169 * t377 - t129 * t383 - t61 * t375 - t291;
-        let minus_rate_dot_proximal_leg2 = t62 * t490;
-        let t494 = 6.936717523440031 * c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t62 * t278;
-        let t504 = t483 * parameters[17] - parameters[16] * minus_rate_dot_proximal_leg2
-            - t494 * parameters[18] + parameters[22]
+                * (t435 - t391 * parameters[12] - t382 * parameters[13]
+                    - t440 * parameters[15]);
+        let t445 = t388 - t444;
+        let t456 = parameters[8] * (t427 - t410) - t397 * parameters[7]
+            + parameters[9] * t373 + t397 * parameters[10] + parameters[11] * t392;
+        let t462 = t456 + parameters[12] * rate_dot_distal_leg1 + t419 * parameters[13]
+            + t440 * parameters[14];
+        let t463 = minus_gdistal_wx_leg1 * t462;
+        let t465 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t472 = t153 * t362 - t114 * t368 - t53 * t360 - t273;
+        let minus_rate_dot_proximal_leg2 = t54 * t472;
+        let t485 = t465 * parameters[17] - parameters[16] * minus_rate_dot_proximal_leg2
+            - 6.936717523440031 * c_proximal_leg2 * parameters[18] + parameters[22]
             - (parameters[19] * minus_rate_dot_proximal_leg2
                 + minus_rate_proximal_leg2 * parameters[20]
                 + ::overact::math::signed(parameters[21], minus_rate_proximal_leg2));
-        let t505 = t490 + t280;
-        let t507 = t278 * rate_distal_leg2;
-        let t508 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t509 = t508 - t507;
-        let t513 = t278 * t279;
-        let minus_rate_dot_distal_leg2 = t278 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t383 + gdistal_wy_leg2 * t377
-            - gdistal_wy_leg2 * t375 - minus_rate_dot_distal_leg2;
-        let t526 = t279 * t279;
-        let t527 = rate_distal_leg2 * rate_distal_leg2;
-        let t530 = parameters[23] * t505 - parameters[24] * (t507 - t509)
-            + parameters[25] * (t513 + rate_dot_distal_leg2) - t280 * parameters[26]
-            + parameters[27] * (t526 - t527);
-        let t537 = c_distal_leg2 * t494 - 3.4683587617200153 * t44;
-        let t545 = t278 * t278;
-        let t553 = t507 * parameters[23] + parameters[24] * (t280 + t505)
-            + parameters[25] * (t527 - t545) + parameters[26] * t509
-            - parameters[27] * (t513 - rate_dot_distal_leg2);
-        let t558 = 6.936717523440031 * t60;
-        let t562 = c_distal_leg2
-            * (t530 + t280 * parameters[28] - t483 * parameters[30]
-                - t537 * parameters[31])
+        let t486 = t472 + t263;
+        let t488 = t260 * rate_distal_leg2;
+        let t489 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t490 = t489 - t488;
+        let t494 = t260 * t262;
+        let minus_rate_dot_distal_leg2 = t260 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t368 + gdistal_wy_leg2 * t362
+            - gdistal_wy_leg2 * t360 - minus_rate_dot_distal_leg2;
+        let t507 = t262 * t262;
+        let t508 = rate_distal_leg2 * rate_distal_leg2;
+        let t511 = parameters[23] * t486 - parameters[24] * (t488 - t490)
+            + parameters[25] * (t494 + rate_dot_distal_leg2) - t263 * parameters[26]
+            + parameters[27] * (t507 - t508);
+        let t516 = t39 * (-6.936717523440031);
+        let t524 = t260 * t260;
+        let t532 = t488 * parameters[23] + parameters[24] * (t263 + t486)
+            + parameters[25] * (t508 - t524) + parameters[26] * t490
+            - parameters[27] * (t494 - rate_dot_distal_leg2);
+        let t537 = 6.936717523440031 * t52;
+        let t541 = c_distal_leg2
+            * (t511 + t263 * parameters[28] - t465 * parameters[30]
+                - t516 * parameters[31])
             + minus_s_distal_leg2
-                * (t553 - t507 * parameters[28] + t483 * parameters[29]
-                    - t558 * parameters[31]);
-        let t563 = t504 - t562;
-        let t574 = parameters[24] * (t545 - t526) - t513 * parameters[23]
-            + parameters[25] * t490 + t513 * parameters[26] + parameters[27] * t508;
-        let t580 = t574 + parameters[28] * rate_dot_distal_leg2 + t537 * parameters[29]
-            + t558 * parameters[30];
-        let t581 = gdistal_wy_leg2 * t580;
-        let t584 = t307 * t308;
-        let t586 = t307 * t307;
-        let t587 = t308 * t308;
-        let t596 = t158 * t377 - t115 * t383 + t85 * t375 + t320;
-        let minus_rate_dot_proximal_leg3_2 = t86 * t596;
-        let t602 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t604 = t584 * parameters[39] + parameters[40] * (t586 - t587)
-            + parameters[41] * t596 - t584 * parameters[42] - parameters[43] * t602;
-        let minus_rate_dot_distal_leg3 = t307 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t375
-            - (gdistal_wx_leg3 * t383 + c_proximal_leg3 * t377)
+                * (t532 - t488 * parameters[28] + t465 * parameters[29]
+                    - t537 * parameters[31]);
+        let t542 = t485 - t541;
+        let t553 = parameters[24] * (t524 - t507) - t494 * parameters[23]
+            + parameters[25] * t472 + t494 * parameters[26] + parameters[27] * t489;
+        let t559 = t553 + parameters[28] * rate_dot_distal_leg2 + t516 * parameters[29]
+            + t537 * parameters[30];
+        let t560 = gdistal_wy_leg2 * t559;
+        let t563 = t288 * t290;
+        let t565 = t288 * t288;
+        let t566 = t290 * t290;
+        let t575 = t143 * t362 - t101 * t368 + t74 * t360 + t306;
+        let minus_rate_dot_proximal_leg3_2 = t75 * t575;
+        let t581 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t583 = t563 * parameters[39] + parameters[40] * (t565 - t566)
+            + parameters[41] * t575 - t563 * parameters[42] - parameters[43] * t581;
+        let minus_rate_dot_distal_leg3 = t288 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t360
+            - (gdistal_wx_leg3 * t368 + c_proximal_leg3 * t362)
             - minus_rate_dot_distal_leg3;
-        let t614 = 6.936717523440031 * c_proximal_leg3;
-        let t617 = c_distal_leg3 * t614 + 3.4683587617200153 * t68;
-        let t620 = 6.936717523440031 * t84;
-        let t622 = t604 + parameters[44] * rate_dot_distal_leg3 + t617 * parameters[45]
-            - t620 * parameters[46];
-        let t623 = gdistal_wx_leg3 * t622;
-        let minus_rate_proximal_leg3 = t86 * t307;
-        let t632 = 6.936717523440031 * s_proximal_leg3;
-        let t637 = parameters[38]
+        let t593 = t58 * 6.936717523440031;
+        let t596 = 6.936717523440031 * t73;
+        let t598 = t583 + parameters[44] * rate_dot_distal_leg3 + t593 * parameters[45]
+            - t596 * parameters[46];
+        let t599 = gdistal_wx_leg3 * t598;
+        let t607 = 6.936717523440031 * s_proximal_leg3;
+        let t613 = parameters[38]
             - (parameters[35] * minus_rate_dot_proximal_leg3_2
                 + minus_rate_proximal_leg3 * parameters[36]
                 + ::overact::math::signed(parameters[37], minus_rate_proximal_leg3))
-            - (parameters[32] * minus_rate_dot_proximal_leg3_2 + t632 * parameters[33]
-                + t614 * parameters[34]);
-        let t638 = t307 * rate_distal_leg3;
-        let t640 = t596 - t309;
-        let t644 = rate_distal_leg3 * rate_distal_leg3;
-        let t648 = t602 + t638;
-        let t653 = t638 * parameters[39] + parameters[40] * (t640 - t309)
-            + parameters[41] * (t644 - t586) - parameters[42] * t648
-            + parameters[43] * (t584 + rate_dot_distal_leg3);
-        let t672 = parameters[39] * t640 - parameters[40] * (t638 + t648)
-            + parameters[41] * (rate_dot_distal_leg3 - t584) + t309 * parameters[42]
-            + parameters[43] * (t587 - t644);
-        let t680 = s_distal_leg3
-            * (t653 - t638 * parameters[44] - t632 * parameters[45]
-                + t620 * parameters[47])
+            - (parameters[32] * minus_rate_dot_proximal_leg3_2 + t607 * parameters[33]
+                + 6.936717523440031 * c_proximal_leg3 * parameters[34]);
+        let t614 = t288 * rate_distal_leg3;
+        let t616 = t575 - t291;
+        let t620 = rate_distal_leg3 * rate_distal_leg3;
+        let t624 = t581 + t614;
+        let t629 = t614 * parameters[39] + parameters[40] * (t616 - t291)
+            + parameters[41] * (t620 - t565) - parameters[42] * t624
+            + parameters[43] * (t563 + rate_dot_distal_leg3);
+        let t648 = parameters[39] * t616 - parameters[40] * (t614 + t624)
+            + parameters[41] * (rate_dot_distal_leg3 - t563) + t291 * parameters[42]
+            + parameters[43] * (t566 - t620);
+        let t656 = s_distal_leg3
+            * (t629 - t614 * parameters[44] - t607 * parameters[45]
+                + t596 * parameters[47])
             - c_distal_leg3
-                * (t672 - t309 * parameters[44] + t632 * parameters[46]
-                    - t617 * parameters[47]);
-        let t681 = t637 + t680;
-        let t685 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t692 = t175 * t377 - t138 * t383 + t109 * t375 - t349;
-        let minus_rate_dot_proximal_leg4 = t110 * t692;
-        let t696 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg4 = t110 * t336;
-        let t706 = t685 * parameters[49] - parameters[48] * minus_rate_dot_proximal_leg4
-            - t696 * parameters[50] + parameters[54]
+                * (t648 - t291 * parameters[44] + t607 * parameters[46]
+                    - t593 * parameters[47]);
+        let t657 = t613 + t656;
+        let t661 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t668 = t159 * t362 - t123 * t368 + t95 * t360 - t334;
+        let minus_rate_dot_proximal_leg4 = t96 * t668;
+        let t681 = t661 * parameters[49] - parameters[48] * minus_rate_dot_proximal_leg4
+            - 6.936717523440031 * c_proximal_leg4 * parameters[50] + parameters[54]
             - (parameters[51] * minus_rate_dot_proximal_leg4
                 + minus_rate_proximal_leg4 * parameters[52]
                 + ::overact::math::signed(parameters[53], minus_rate_proximal_leg4));
-        let t707 = t692 + t338;
-        let t710 = t336 * minus_rate_distal_leg4;
-        let t713 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t714 = t336 * t336;
-        let t718 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t719 = t710 - t718;
-        let minus_rate_dot_distal_leg4 = t336 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t383
-            + minus_gdistal_wy_leg4 * t377 + minus_gdistal_wy_leg4 * t375
+        let t682 = t668 + t324;
+        let t685 = t321 * minus_rate_distal_leg4;
+        let t688 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t689 = t321 * t321;
+        let t693 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t694 = t685 - t693;
+        let minus_rate_dot_distal_leg4 = t321 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t368
+            + minus_gdistal_wy_leg4 * t362 + minus_gdistal_wy_leg4 * t360
             + minus_rate_dot_distal_leg4;
-        let t729 = t336 * t337;
-        let t732 = parameters[56] * (t338 + t707) - t710 * parameters[55]
-            + parameters[57] * (t713 - t714) + parameters[58] * t719
-            - parameters[59] * (minus_rate_dot_distal_leg4_2 - t729);
-        let t737 = 6.936717523440031 * t108;
-        let t750 = t337 * t337;
-        let t753 = parameters[55] * t707 + parameters[56] * (t710 + t719)
-            - parameters[57] * (t729 + minus_rate_dot_distal_leg4_2)
-            - t338 * parameters[58] + parameters[59] * (t750 - t713);
-        let t760 = c_distal_leg4 * t696 + 3.4683587617200153 * t92;
-        let t764 = s_distal_leg4
-            * (t732 + t710 * parameters[60] + t685 * parameters[61]
-                + t737 * parameters[63])
+        let t704 = t321 * t323;
+        let t707 = parameters[56] * (t324 + t682) - t685 * parameters[55]
+            + parameters[57] * (t688 - t689) + parameters[58] * t694
+            - parameters[59] * (minus_rate_dot_distal_leg4_2 - t704);
+        let t712 = 6.936717523440031 * t94;
+        let t725 = t323 * t323;
+        let t728 = parameters[55] * t682 + parameters[56] * (t685 + t694)
+            - parameters[57] * (t704 + minus_rate_dot_distal_leg4_2)
+            - t324 * parameters[58] + parameters[59] * (t725 - t688);
+        let t733 = t79 * 6.936717523440031;
+        let t737 = s_distal_leg4
+            * (t707 + t685 * parameters[60] + t661 * parameters[61]
+                + t712 * parameters[63])
             - c_distal_leg4
-                * (t753 + t338 * parameters[60] - t685 * parameters[62]
-                    - t760 * parameters[63]);
-        let t765 = t706 + t764;
-        let t776 = t729 * parameters[55] + parameters[56] * (t714 - t750)
-            + parameters[57] * t692 - t729 * parameters[58] - parameters[59] * t718;
-        let t782 = t776 - parameters[60] * minus_rate_dot_distal_leg4_2
-            + t760 * parameters[61] - t737 * parameters[62];
-        let t783 = minus_gdistal_wy_leg4 * t782;
-        let t785 = gproximal_wz_leg1 * t463 + t481 + gproximal_wz_leg2 * t563 - t581
-            + t623 - minus_gproximal_wz_leg3 * t681
-            - (minus_gproximal_wz_leg4 * t765 + t783);
-        let t790 = t153 * t377 - t5 * t383 + t11 * t375;
-        let t796 = t153 * t235 - t5 * t239 + t11 * t233;
-        let t801 = t40 * t235 - t9 * t239 + t14 * t233;
-        let t802 = t796 * t801;
-        let t807 = t37 * t377 - t124 * t383 + t42 * t375;
-        let t815 = t37 * t235 - t124 * t239 + t42 * t233;
-        let t816 = t796 * t815;
-        let t821 = t40 * t377 - t9 * t383 + t14 * t375;
-        let t825 = t815 * t801;
-        let t828 = t815 * t815;
-        let t829 = t801 * t801;
-        let t832 = parameters[64] * t790 - parameters[65] * (t802 - t807)
-            + parameters[66] * (t816 + t821) - t825 * parameters[67]
-            + parameters[68] * (t828 - t829);
-        let t835 = 9.81 * t14;
-        let t838 = 9.81 * t42;
-        let t840 = t832 + t825 * parameters[69] + t835 * parameters[71]
-            - t838 * parameters[72];
-        let t846 = t796 * t796;
-        let t854 = t802 * parameters[64] + parameters[65] * (t825 + t790)
-            + parameters[66] * (t829 - t846) + parameters[67] * t807
-            - parameters[68] * (t816 - t821);
-        let t859 = 9.81 * t11;
-        let t861 = t854 - t802 * parameters[69] - t835 * parameters[70]
-            + t859 * parameters[72];
-        let t875 = parameters[65] * (t846 - t828) - t816 * parameters[64]
-            - parameters[66] * (t825 - t790) + t816 * parameters[67]
-            + parameters[68] * (t802 + t807);
-        let t881 = t875 + parameters[69] * t821 + t838 * parameters[70]
-            - t859 * parameters[71];
-        let t897 = t623 - minus_gproximal_wx_leg3 * t681
-            - (minus_gproximal_wx_leg1 * t463 + t481 + minus_gproximal_wx_leg2 * t563
-                + c_proximal_leg2 * t580) + c_proximal_leg4 * t782
-            - minus_gproximal_wx_leg4 * t765;
-        let t903 = t897 + t5 * t840 + t124 * t861 + t9 * t881;
-        let t915 = c_proximal_leg1 * t480 - minus_gproximal_wy_leg1 * t463 + t581
-            - minus_gproximal_wy_leg2 * t563
-            - (minus_gproximal_wy_leg3 * t681 + c_proximal_leg3 * t622);
-        let t926 = t915 - (minus_gproximal_wy_leg4 * t765 + t783) + t153 * t840
-            + t37 * t861 + t40 * t881 - t195 * t903;
-        let t928 = t785 + t11 * t840 + t42 * t861 + t14 * t881 - t150 * t903
-            - t199 * t926;
-        let t929 = t202 * t928;
-        let t934 = t198 * t926 - t199 * t929;
-        let t938 = t149 * t903 - t195 * t934 - t150 * t929;
+                * (t728 + t324 * parameters[60] - t661 * parameters[62]
+                    - t733 * parameters[63]);
+        let t738 = t681 + t737;
+        let t749 = t704 * parameters[55] + parameters[56] * (t689 - t725)
+            + parameters[57] * t668 - t704 * parameters[58] - parameters[59] * t693;
+        let t755 = t749 - parameters[60] * minus_rate_dot_distal_leg4_2
+            + t733 * parameters[61] - t712 * parameters[62];
+        let t756 = minus_gdistal_wy_leg4 * t755;
+        let t758 = gproximal_wz_leg1 * t445 + t463 + gproximal_wz_leg2 * t542 - t560
+            + t599 - minus_gproximal_wz_leg3 * t657
+            - (minus_gproximal_wz_leg4 * t738 + t756);
+        let t763 = t138 * t362 - t5 * t368 + t11 * t360;
+        let t765 = t296 * t301;
+        let t766 = t38 * t765;
+        let t768 = t296 * t329;
+        let t769 = t14 * t768;
+        let t776 = t33 * t362 - t110 * t368 + t38 * t360;
+        let t777 = t776 - t765;
+        let t779 = t329 * t301;
+        let t780 = t763 + t779;
+        let t783 = t296 * t296;
+        let t784 = t329 * t329;
+        let t785 = t783 - t784;
+        let t789 = parameters[64] * (t11 * t763 + t766 - t769)
+            + parameters[65] * (t11 * t777 + t38 * t780 + t14 * t785);
+        let t794 = t36 * t362 - t9 * t368 + t14 * t360;
+        let t795 = t794 + t768;
+        let t797 = t301 * t301;
+        let t798 = t797 - t783;
+        let t801 = t763 - t779;
+        let t807 = t11 * t779;
+        let t811 = t789 + parameters[66] * (t11 * t795 + t38 * t798 + t14 * t801)
+            + parameters[67] * (t38 * t776 - t807 + t769);
+        let t812 = t784 - t797;
+        let t814 = t794 - t768;
+        let t817 = t776 + t765;
+        let t826 = t811 + parameters[68] * (t11 * t812 + t38 * t814 + t14 * t817)
+            + parameters[69] * (t807 - t766 + t14 * t794);
+        let t840 = t599 - minus_gproximal_wx_leg3 * t657
+            - (minus_gproximal_wx_leg1 * t445 + t463 + minus_gproximal_wx_leg2 * t542
+                + c_proximal_leg2 * t559) + c_proximal_leg4 * t755
+            - minus_gproximal_wx_leg4 * t738;
+        let t842 = t110 * t765;
+        let t844 = t9 * t768;
+        let t853 = parameters[64] * (t5 * t763 + t842 - t844)
+            + parameters[65] * (t5 * t777 + t110 * t780 + t9 * t785);
+        let t862 = t5 * t779;
+        let t866 = t853 + parameters[66] * (t5 * t795 + t110 * t798 + t9 * t801)
+            + parameters[67] * (t110 * t776 - t862 + t844);
+        let t878 = t866 + parameters[68] * (t5 * t812 + t110 * t814 + t9 * t817)
+            + parameters[69] * (t862 - t842 + t9 * t794);
+        let t888 = t840 + t878 + parameters[70] * (9.81 * t138)
+            + parameters[71] * (9.81 * t33) + parameters[72] * (9.81 * t36);
+        let t900 = c_proximal_leg1 * t462 - minus_gproximal_wy_leg1 * t445 + t560
+            - minus_gproximal_wy_leg2 * t542
+            - (minus_gproximal_wy_leg3 * t657 + c_proximal_leg3 * t598);
+        let t905 = t33 * t765;
+        let t907 = t36 * t768;
+        let t916 = parameters[64] * (t138 * t763 + t905 - t907)
+            + parameters[65] * (t138 * t777 + t33 * t780 + t36 * t785);
+        let t925 = t138 * t779;
+        let t929 = t916 + parameters[66] * (t138 * t795 + t33 * t798 + t36 * t801)
+            + parameters[67] * (t33 * t776 - t925 + t907);
+        let t941 = t929 + parameters[68] * (t138 * t812 + t33 * t814 + t36 * t817)
+            + parameters[69] * (t925 - t905 + t36 * t794);
+        let t951 = t900 - (minus_gproximal_wy_leg4 * t738 + t756) + t941
+            - parameters[70] * (9.81 * t5) - parameters[71] * (9.81 * t110)
+            - parameters[72] * (9.81 * t9);
+        let t953 = t951 - t179 * t888;
+        let t956 = t186 * (t758 + t826 - t135 * t888 - t183 * t953);
+        let t961 = t182 * t953 - t183 * t956;
+        let t965 = t134 * t888 - t179 * t961 - t135 * t956;
         Ok([
-            gproximal_wz_leg1 * t929
-                - (minus_gproximal_wx_leg1 * t938 + minus_gproximal_wy_leg1 * t934),
-            gproximal_wz_leg2 * t929
-                - (minus_gproximal_wx_leg2 * t938 + minus_gproximal_wy_leg2 * t934),
-            -(minus_gproximal_wx_leg3 * t938 + minus_gproximal_wy_leg3 * t934
-                + minus_gproximal_wz_leg3 * t929),
-            -(minus_gproximal_wx_leg4 * t938 + minus_gproximal_wy_leg4 * t934
-                + minus_gproximal_wz_leg4 * t929),
+            gproximal_wz_leg1 * t956
+                - (minus_gproximal_wx_leg1 * t965 + minus_gproximal_wy_leg1 * t961),
+            gproximal_wz_leg2 * t956
+                - (minus_gproximal_wx_leg2 * t965 + minus_gproximal_wy_leg2 * t961),
+            -(minus_gproximal_wx_leg3 * t965 + minus_gproximal_wy_leg3 * t961
+                + minus_gproximal_wz_leg3 * t956),
+            -(minus_gproximal_wx_leg4 * t965 + minus_gproximal_wy_leg4 * t961
+                + minus_gproximal_wz_leg4 * t956),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -9787,7 +9541,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3 x 3.
     ///
-    /// 582 operations (233 additions, 341 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 580 intermediates.
+    /// 624 operations (238 additions, 378 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 622 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9795,276 +9549,290 @@ impl Spherical4Rrr {
         pose: &[f64; 4],
         parameters: &[f64; 73],
     ) -> Result<[[f64; 3]; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t6 = 2.0 * pose[1];
-        let t7 = pose[3] * t6;
-        let t8 = pose[0] * t0;
-        let t9 = t7 + t8;
-        let t10 = t5 + t9;
-        let t11 = t7 - t8;
-        let t13 = 1.0 - pose[1] * t6;
-        let t14 = t13 - t1;
-        let t15 = t11 + t14;
-        let t16 = t15 - t10;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t4 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t0;
+        let t7 = pose[2] * t2;
+        let t8 = t6 - t7;
+        let t9 = t4 + t8;
+        let t11 = 2.0 * pose[3];
+        let t12 = pose[3] * t11;
+        let t13 = 1.0 - t7 - t12;
+        let t14 = t1 + t3;
+        let t15 = t13 + t14;
+        let s_distal_leg3 = 0.5 * (t9 - t15);
+        let t19 = 1.0 - s_distal_leg3 * s_distal_leg3;
         ::overact::guard::reach(t19, "leg3")?;
         let c_distal_leg3 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg3 + t15 * c_distal_leg3));
-        let t26 = pose[2] * t6;
-        let t27 = pose[0] * t3;
-        let t28 = t26 + t27;
-        let t29 = pose[3] * t0;
-        let t30 = pose[0] * t6;
-        let t31 = t29 - t30;
-        let t33 = t10 + t15;
-        let s_proximal_leg3 = t25 * (0.35355339059327373 * ((t28 + t31) * t33));
+        let t21 = t15 + t9;
+        let t24 = 1.0 / (0.5 * (c_distal_leg3 * t21));
+        let t25 = pose[2] * t0;
+        let t26 = pose[0] * t11;
+        let t27 = t25 + t26;
+        let t28 = pose[3] * t2;
+        let t29 = pose[0] * t0;
+        let t30 = t28 - t29;
+        let s_proximal_leg3 = t24 * (0.35355339059327373 * ((t27 + t30) * t21));
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let s_distal_leg3 = 0.5 * t16;
-        let c_proximal_leg3 = t25 * (0.25 * (t33 * t33));
-        let t42 = s_distal_leg3 * c_proximal_leg3;
-        let t44 = 0.7071067811865475 * (t42 + c_distal_leg3);
-        let t46 = 1.0 / c_distal_leg3;
-        let t47 = s_distal_leg3 * t46;
-        let t48 = t44 * t47;
-        let t51 = gdistal_wx_leg3 * parameters[44];
-        let minus_gproximal_wx_leg3 = t44 * t46;
-        let t58 = gdistal_wx_leg3 * parameters[43];
-        let t64 = gdistal_wx_leg3 * parameters[41];
-        let t67 = s_distal_leg3 * (t44 * parameters[40] - t48 * parameters[42] + t58)
-            - c_distal_leg3 * (t44 * parameters[39] - t48 * parameters[40] + t64);
-        let t73 = gdistal_wx_leg3 * (t44 * parameters[41] - t48 * parameters[43] + t51)
+        let c_proximal_leg3 = t24 * (0.25 * (t21 * t21));
+        let t39 = s_distal_leg3 * c_proximal_leg3;
+        let t41 = 0.7071067811865475 * (t39 + c_distal_leg3);
+        let t43 = 1.0 / c_distal_leg3;
+        let t44 = s_distal_leg3 * t43;
+        let t45 = t41 * t44;
+        let t48 = gdistal_wx_leg3 * parameters[44];
+        let minus_gproximal_wx_leg3 = t41 * t43;
+        let t55 = gdistal_wx_leg3 * parameters[43];
+        let t61 = gdistal_wx_leg3 * parameters[41];
+        let t64 = s_distal_leg3 * (t41 * parameters[40] - t45 * parameters[42] + t55)
+            - c_distal_leg3 * (t41 * parameters[39] - t45 * parameters[40] + t61);
+        let t70 = gdistal_wx_leg3 * (t41 * parameters[41] - t45 * parameters[43] + t48)
             - minus_gproximal_wx_leg3
-                * (t67
+                * (t64
                     - (minus_gproximal_wx_leg3 * parameters[35]
                         + minus_gproximal_wx_leg3 * parameters[32]));
-        let t74 = t5 - t9;
-        let t75 = t11 - t14;
-        let t76 = t74 + t75;
-        let t79 = 1.0 - 0.25 * (t76 * t76);
-        ::overact::guard::reach(t79, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t79);
+        let t71 = t13 - t14;
+        let t72 = t4 - t8;
+        let minus_s_distal_leg1 = 0.5 * (t71 + t72);
+        let t76 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t76, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t76);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t85 = 1.0 / (0.5 * (t74 * c_distal_leg1 - t75 * c_distal_leg1));
-        let t87 = t74 - t75;
-        let s_proximal_leg1 = t85 * (0.35355339059327373 * ((t28 - t31) * t87));
+        let t78 = t71 - t72;
+        let t81 = 1.0 / (0.5 * (c_distal_leg1 * t78));
+        let s_proximal_leg1 = t81 * (0.35355339059327373 * ((t27 - t30) * t78));
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let minus_s_distal_leg1 = 0.5 * t76;
-        let c_proximal_leg1 = t85 * (0.25 * (t87 * t87));
-        let t96 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t98 = 0.7071067811865475 * (t96 - c_distal_leg1);
-        let t100 = 1.0 / c_distal_leg1;
-        let t101 = minus_s_distal_leg1 * t100;
-        let t102 = t98 * t101;
-        let t105 = minus_gdistal_wx_leg1 * parameters[12];
-        let minus_gproximal_wx_leg1 = t98 * t100;
-        let t115 = minus_gdistal_wx_leg1 * parameters[9];
-        let t121 = minus_gdistal_wx_leg1 * parameters[11];
-        let t124 = c_distal_leg1 * (t98 * parameters[7] + t102 * parameters[8] - t115)
-            + minus_s_distal_leg1 * (t98 * parameters[8] + t102 * parameters[10] - t121);
-        let t127 = minus_gdistal_wx_leg1
-            * (t98 * parameters[9] + t102 * parameters[11] - t105)
+        let c_proximal_leg1 = t81 * (0.25 * (t78 * t78));
+        let t90 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t92 = 0.7071067811865475 * (t90 - c_distal_leg1);
+        let t94 = 1.0 / c_distal_leg1;
+        let t95 = minus_s_distal_leg1 * t94;
+        let t96 = t92 * t95;
+        let t99 = minus_gdistal_wx_leg1 * parameters[12];
+        let minus_gproximal_wx_leg1 = t92 * t94;
+        let t109 = minus_gdistal_wx_leg1 * parameters[9];
+        let t115 = minus_gdistal_wx_leg1 * parameters[11];
+        let t118 = c_distal_leg1 * (t92 * parameters[7] + t96 * parameters[8] - t109)
+            + minus_s_distal_leg1 * (t92 * parameters[8] + t96 * parameters[10] - t115);
+        let t121 = minus_gdistal_wx_leg1
+            * (t92 * parameters[9] + t96 * parameters[11] - t99)
             - minus_gproximal_wx_leg1
                 * (minus_gproximal_wx_leg1 * parameters[3]
-                    + minus_gproximal_wx_leg1 * parameters[0] + t124);
-        let t128 = t13 - t4;
-        let t129 = t128 - t31;
-        let t130 = t29 + t30;
-        let t131 = t130 - t14;
-        let t132 = t129 + t131;
-        let t135 = 1.0 - 0.25 * (t132 * t132);
-        ::overact::guard::reach(t135, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t135);
+                    + minus_gproximal_wx_leg1 * parameters[0] + t118);
+        let t122 = t6 - t12;
+        let t123 = t122 - t30;
+        let t124 = t28 + t29;
+        let t125 = t124 - t8;
+        let minus_s_distal_leg2 = 0.5 * (t123 + t125);
+        let t129 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t129, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t129);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t141 = 1.0 / (0.5 * (t129 * c_distal_leg2 - t131 * c_distal_leg2));
-        let t142 = t129 - t131;
-        let c_proximal_leg2 = t141 * (0.25 * (t142 * t142));
-        let minus_s_distal_leg2 = 0.5 * t132;
-        let t147 = t26 - t27;
-        let minus_s_proximal_leg2 = t141 * (0.35355339059327373 * ((t147 - t9) * t142));
-        let t152 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let t154 = 1.0 / c_distal_leg2;
-        let t155 = minus_s_distal_leg2 * t154;
-        let t156 = t152 * t155;
-        let minus_gproximal_wx_leg2 = t152 * t154;
-        let t178 = c_distal_leg2
-            * (t152 * parameters[23] + t156 * parameters[24]
+        let t131 = t123 - t125;
+        let t134 = 1.0 / (0.5 * (c_distal_leg2 * t131));
+        let c_proximal_leg2 = t134 * (0.25 * (t131 * t131));
+        let t138 = t25 - t26;
+        let minus_s_proximal_leg2 = t134 * (0.35355339059327373 * ((t138 - t14) * t131));
+        let t143 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let t145 = 1.0 / c_distal_leg2;
+        let t146 = minus_s_distal_leg2 * t145;
+        let t147 = t143 * t146;
+        let minus_gproximal_wx_leg2 = t143 * t145;
+        let t169 = c_distal_leg2
+            * (t143 * parameters[23] + t147 * parameters[24]
                 - c_proximal_leg2 * parameters[25])
             + minus_s_distal_leg2
-                * (t152 * parameters[24] + t156 * parameters[26]
+                * (t143 * parameters[24] + t147 * parameters[26]
                     - c_proximal_leg2 * parameters[27]);
-        let t181 = c_proximal_leg2
-            * (t152 * parameters[25] + t156 * parameters[27]
+        let t172 = c_proximal_leg2
+            * (t143 * parameters[25] + t147 * parameters[27]
                 - c_proximal_leg2 * parameters[28])
             - minus_gproximal_wx_leg2
                 * (minus_gproximal_wx_leg2 * parameters[16]
-                    + minus_gproximal_wx_leg2 * parameters[19] + t178);
-        let t184 = t128 + t31;
-        let t185 = t130 + t14;
-        let t186 = t185 - t184;
-        let t189 = 1.0 - 0.25 * (t186 * t186);
-        ::overact::guard::reach(t189, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t189);
+                    + minus_gproximal_wx_leg2 * parameters[19] + t169);
+        let t175 = t124 + t8;
+        let t176 = t122 + t30;
+        let s_distal_leg4 = 0.5 * (t175 - t176);
+        let t180 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t180, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t180);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t195 = 1.0 / (0.5 * (t184 * c_distal_leg4 + t185 * c_distal_leg4));
-        let t196 = t184 + t185;
-        let c_proximal_leg4 = t195 * (0.25 * (t196 * t196));
-        let s_distal_leg4 = 0.5 * t186;
-        let minus_s_proximal_leg4 = t195 * (0.35355339059327373 * ((t147 + t9) * t196));
-        let t205 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t207 = 1.0 / c_distal_leg4;
-        let t208 = s_distal_leg4 * t207;
-        let t209 = t205 * t208;
-        let minus_gproximal_wx_leg4 = t205 * t207;
-        let t228 = s_distal_leg4
-            * (t205 * parameters[56] - t209 * parameters[58]
+        let t182 = t176 + t175;
+        let t185 = 1.0 / (0.5 * (c_distal_leg4 * t182));
+        let c_proximal_leg4 = t185 * (0.25 * (t182 * t182));
+        let minus_s_proximal_leg4 = t185 * (0.35355339059327373 * ((t138 + t14) * t182));
+        let t193 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t195 = 1.0 / c_distal_leg4;
+        let t196 = s_distal_leg4 * t195;
+        let t197 = t193 * t196;
+        let minus_gproximal_wx_leg4 = t193 * t195;
+        let t216 = s_distal_leg4
+            * (t193 * parameters[56] - t197 * parameters[58]
                 + c_proximal_leg4 * parameters[59])
             - c_distal_leg4
-                * (t205 * parameters[55] - t209 * parameters[56]
+                * (t193 * parameters[55] - t197 * parameters[56]
                     + c_proximal_leg4 * parameters[57]);
-        let t234 = c_proximal_leg4
-            * (t205 * parameters[57] - t209 * parameters[59]
+        let t222 = c_proximal_leg4
+            * (t193 * parameters[57] - t197 * parameters[59]
                 + c_proximal_leg4 * parameters[60])
             - minus_gproximal_wx_leg4
-                * (t228
+                * (t216
                     - (minus_gproximal_wx_leg4 * parameters[48]
                         + minus_gproximal_wx_leg4 * parameters[51]));
-        let t248 = t5
-            * (t5 * parameters[64] + t147 * parameters[65] + t9 * parameters[66])
-            + t147 * (t5 * parameters[65] + t147 * parameters[67] + t9 * parameters[68]);
-        let t256 = t73 - (t127 + t181) + t234 + t248
-            + t9 * (t5 * parameters[66] + t147 * parameters[68] + t9 * parameters[69]);
-        let t257 = s_distal_leg3 * s_proximal_leg3;
-        let t259 = t257 * t47;
-        let t263 = t257 * parameters[41] - t259 * parameters[43]
+        let t233 = parameters[64] * (t13 * t13) + parameters[65] * (2.0 * (t13 * t138))
+            + parameters[66] * (2.0 * (t13 * t14));
+        let t243 = t233 + parameters[67] * (t138 * t138)
+            + parameters[68] * (2.0 * (t138 * t14)) + parameters[69] * (t14 * t14);
+        let t245 = s_distal_leg3 * s_proximal_leg3;
+        let t247 = t245 * t44;
+        let t251 = t245 * parameters[41] - t247 * parameters[43]
             - c_proximal_leg3 * parameters[44];
-        let t277 = s_distal_leg3
-            * (t257 * parameters[40] - t259 * parameters[42]
+        let t265 = s_distal_leg3
+            * (t245 * parameters[40] - t247 * parameters[42]
                 - c_proximal_leg3 * parameters[43])
             - c_distal_leg3
-                * (t257 * parameters[39] - t259 * parameters[40]
+                * (t245 * parameters[39] - t247 * parameters[40]
                     - c_proximal_leg3 * parameters[41]);
-        let minus_gproximal_wy_leg3 = t257 * t46;
-        let t282 = t277
+        let minus_gproximal_wy_leg3 = t245 * t43;
+        let t270 = t265
             - (minus_gproximal_wy_leg3 * parameters[35]
                 + minus_gproximal_wy_leg3 * parameters[32]);
-        let t285 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t287 = t285 * t101;
-        let t291 = t285 * parameters[9] + t287 * parameters[11]
+        let t273 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t275 = t273 * t95;
+        let t279 = t273 * parameters[9] + t275 * parameters[11]
             + c_proximal_leg1 * parameters[12];
-        let minus_gproximal_wy_leg1 = t285 * t100;
-        let t309 = c_distal_leg1
-            * (t285 * parameters[7] + t287 * parameters[8]
+        let minus_gproximal_wy_leg1 = t273 * t94;
+        let t297 = c_distal_leg1
+            * (t273 * parameters[7] + t275 * parameters[8]
                 + c_proximal_leg1 * parameters[9])
             + minus_s_distal_leg1
-                * (t285 * parameters[8] + t287 * parameters[10]
+                * (t273 * parameters[8] + t275 * parameters[10]
                     + c_proximal_leg1 * parameters[11]);
-        let t310 = minus_gproximal_wy_leg1 * parameters[3]
-            + minus_gproximal_wy_leg1 * parameters[0] + t309;
-        let t313 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t315 = 0.7071067811865475 * (t313 - c_distal_leg2);
-        let t317 = t315 * t155;
+        let t298 = minus_gproximal_wy_leg1 * parameters[3]
+            + minus_gproximal_wy_leg1 * parameters[0] + t297;
+        let t301 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t303 = 0.7071067811865475 * (t301 - c_distal_leg2);
+        let t305 = t303 * t146;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let t321 = gdistal_wy_leg2 * parameters[28];
-        let t322 = t315 * parameters[25] + t317 * parameters[27] + t321;
-        let minus_gproximal_wy_leg2 = t315 * t154;
-        let t331 = gdistal_wy_leg2 * parameters[25];
-        let t337 = gdistal_wy_leg2 * parameters[27];
-        let t340 = c_distal_leg2 * (t315 * parameters[23] + t317 * parameters[24] + t331)
+        let t309 = gdistal_wy_leg2 * parameters[28];
+        let t310 = t303 * parameters[25] + t305 * parameters[27] + t309;
+        let minus_gproximal_wy_leg2 = t303 * t145;
+        let t319 = gdistal_wy_leg2 * parameters[25];
+        let t325 = gdistal_wy_leg2 * parameters[27];
+        let t328 = c_distal_leg2 * (t303 * parameters[23] + t305 * parameters[24] + t319)
             + minus_s_distal_leg2
-                * (t315 * parameters[24] + t317 * parameters[26] + t337);
-        let t341 = minus_gproximal_wy_leg2 * parameters[16]
-            + minus_gproximal_wy_leg2 * parameters[19] + t340;
-        let t345 = gdistal_wx_leg3 * t263 - minus_gproximal_wx_leg3 * t282
-            - (minus_gdistal_wx_leg1 * t291 - minus_gproximal_wx_leg1 * t310
-                + c_proximal_leg2 * t322 - minus_gproximal_wx_leg2 * t341);
-        let t346 = s_distal_leg4 * c_proximal_leg4;
-        let t348 = 0.7071067811865475 * (t346 + c_distal_leg4);
-        let t350 = t348 * t208;
+                * (t303 * parameters[24] + t305 * parameters[26] + t325);
+        let t329 = minus_gproximal_wy_leg2 * parameters[16]
+            + minus_gproximal_wy_leg2 * parameters[19] + t328;
+        let t333 = gdistal_wx_leg3 * t251 - minus_gproximal_wx_leg3 * t270
+            - (minus_gdistal_wx_leg1 * t279 - minus_gproximal_wx_leg1 * t298
+                + c_proximal_leg2 * t310 - minus_gproximal_wx_leg2 * t329);
+        let t334 = s_distal_leg4 * c_proximal_leg4;
+        let t336 = 0.7071067811865475 * (t334 + c_distal_leg4);
+        let t338 = t336 * t196;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let t354 = minus_gdistal_wy_leg4 * parameters[60];
-        let t355 = t348 * parameters[57] - t350 * parameters[59] - t354;
-        let t360 = minus_gdistal_wy_leg4 * parameters[59];
-        let t366 = minus_gdistal_wy_leg4 * parameters[57];
-        let t369 = s_distal_leg4 * (t348 * parameters[56] - t350 * parameters[58] - t360)
-            - c_distal_leg4 * (t348 * parameters[55] - t350 * parameters[56] - t366);
-        let minus_gproximal_wy_leg4 = t348 * t207;
-        let t374 = t369
+        let t342 = minus_gdistal_wy_leg4 * parameters[60];
+        let t343 = t336 * parameters[57] - t338 * parameters[59] - t342;
+        let t348 = minus_gdistal_wy_leg4 * parameters[59];
+        let t354 = minus_gdistal_wy_leg4 * parameters[57];
+        let t357 = s_distal_leg4 * (t336 * parameters[56] - t338 * parameters[58] - t348)
+            - c_distal_leg4 * (t336 * parameters[55] - t338 * parameters[56] - t354);
+        let minus_gproximal_wy_leg4 = t336 * t195;
+        let t362 = t357
             - (minus_gproximal_wy_leg4 * parameters[48]
                 + minus_gproximal_wy_leg4 * parameters[51]);
-        let t382 = t28 * parameters[64] + t128 * parameters[65] + t31 * parameters[66];
-        let t388 = t28 * parameters[65] + t128 * parameters[67] + t31 * parameters[68];
-        let t395 = t28 * parameters[66] + t128 * parameters[68] + t31 * parameters[69];
-        let t398 = t345 + c_proximal_leg4 * t355 - minus_gproximal_wx_leg4 * t374
-            + t5 * t382 + t147 * t388 + t9 * t395;
-        let t400 = 0.7071067811865475 * (t42 - c_distal_leg3);
-        let t402 = t400 * t47;
-        let t405 = t400 * parameters[41] - t402 * parameters[43] + t51;
-        let t406 = gdistal_wx_leg3 * t405;
-        let t417 = s_distal_leg3 * (t400 * parameters[40] - t402 * parameters[42] + t58)
-            - c_distal_leg3 * (t400 * parameters[39] - t402 * parameters[40] + t64);
-        let minus_gproximal_wz_leg3 = t400 * t46;
-        let t422 = t417
+        let t377 = parameters[64] * (t13 * t27)
+            + parameters[65] * (t13 * t122 + t138 * t27)
+            + parameters[66] * (t13 * t30 + t14 * t27);
+        let t388 = t377 + parameters[67] * (t138 * t122)
+            + parameters[68] * (t138 * t30 + t14 * t122) + parameters[69] * (t14 * t30);
+        let t389 = t333 + c_proximal_leg4 * t343 - minus_gproximal_wx_leg4 * t362 + t388;
+        let t391 = 0.7071067811865475 * (t39 - c_distal_leg3);
+        let t393 = t391 * t44;
+        let t396 = t391 * parameters[41] - t393 * parameters[43] + t48;
+        let t397 = gdistal_wx_leg3 * t396;
+        let t408 = s_distal_leg3 * (t391 * parameters[40] - t393 * parameters[42] + t55)
+            - c_distal_leg3 * (t391 * parameters[39] - t393 * parameters[40] + t61);
+        let minus_gproximal_wz_leg3 = t391 * t43;
+        let t413 = t408
             - (minus_gproximal_wz_leg3 * parameters[35]
                 + minus_gproximal_wz_leg3 * parameters[32]);
-        let t426 = 0.7071067811865475 * (t96 + c_distal_leg1);
-        let gproximal_wz_leg1 = t426 * t100;
-        let t432 = t426 * t101;
-        let t442 = c_distal_leg1 * (t115 - (t426 * parameters[7] + t432 * parameters[8]))
+        let t417 = 0.7071067811865475 * (t90 + c_distal_leg1);
+        let gproximal_wz_leg1 = t417 * t94;
+        let t423 = t417 * t95;
+        let t433 = c_distal_leg1 * (t109 - (t417 * parameters[7] + t423 * parameters[8]))
             + minus_s_distal_leg1
-                * (t121 - (t426 * parameters[8] + t432 * parameters[10]));
-        let t443 = gproximal_wz_leg1 * parameters[3] + gproximal_wz_leg1 * parameters[0]
-            - t442;
-        let t448 = t105 - (t426 * parameters[9] + t432 * parameters[11]);
-        let t449 = minus_gdistal_wx_leg1 * t448;
-        let t452 = 0.7071067811865475 * (t313 + c_distal_leg2);
-        let gproximal_wz_leg2 = t452 * t154;
-        let t458 = t452 * t155;
-        let t468 = c_distal_leg2 * (t452 * parameters[23] + t458 * parameters[24] + t331)
+                * (t115 - (t417 * parameters[8] + t423 * parameters[10]));
+        let t434 = gproximal_wz_leg1 * parameters[3] + gproximal_wz_leg1 * parameters[0]
+            - t433;
+        let t439 = t99 - (t417 * parameters[9] + t423 * parameters[11]);
+        let t440 = minus_gdistal_wx_leg1 * t439;
+        let t443 = 0.7071067811865475 * (t301 + c_distal_leg2);
+        let gproximal_wz_leg2 = t443 * t145;
+        let t449 = t443 * t146;
+        let t459 = c_distal_leg2 * (t443 * parameters[23] + t449 * parameters[24] + t319)
             + minus_s_distal_leg2
-                * (t452 * parameters[24] + t458 * parameters[26] + t337);
-        let t469 = gproximal_wz_leg2 * parameters[16]
-            + gproximal_wz_leg2 * parameters[19] + t468;
-        let t474 = t452 * parameters[25] + t458 * parameters[27] + t321;
-        let t480 = 0.7071067811865475 * (t346 - c_distal_leg4);
-        let t482 = t480 * t208;
-        let t485 = t480 * parameters[57] - t482 * parameters[59] - t354;
-        let t497 = s_distal_leg4 * (t480 * parameters[56] - t482 * parameters[58] - t360)
-            - c_distal_leg4 * (t480 * parameters[55] - t482 * parameters[56] - t366);
-        let minus_gproximal_wz_leg4 = t480 * t207;
-        let t502 = t497
+                * (t443 * parameters[24] + t449 * parameters[26] + t325);
+        let t460 = gproximal_wz_leg2 * parameters[16]
+            + gproximal_wz_leg2 * parameters[19] + t459;
+        let t465 = t443 * parameters[25] + t449 * parameters[27] + t309;
+        let t471 = 0.7071067811865475 * (t334 - c_distal_leg4);
+        let t473 = t471 * t196;
+        let t476 = t471 * parameters[57] - t473 * parameters[59] - t342;
+        let t488 = s_distal_leg4 * (t471 * parameters[56] - t473 * parameters[58] - t348)
+            - c_distal_leg4 * (t471 * parameters[55] - t473 * parameters[56] - t354);
+        let minus_gproximal_wz_leg4 = t471 * t195;
+        let t493 = t488
             - (minus_gproximal_wz_leg4 * parameters[48]
                 + minus_gproximal_wz_leg4 * parameters[51]);
-        let t505 = t406 - minus_gproximal_wx_leg3 * t422
-            - (minus_gproximal_wx_leg1 * t443 + t449 + minus_gproximal_wx_leg2 * t469
-                - c_proximal_leg2 * t474) + c_proximal_leg4 * t485
-            - minus_gproximal_wx_leg4 * t502;
-        let t510 = t11 * parameters[64] + t130 * parameters[65] + t14 * parameters[66];
-        let t516 = t11 * parameters[65] + t130 * parameters[67] + t14 * parameters[68];
-        let t523 = t11 * parameters[66] + t130 * parameters[68] + t14 * parameters[69];
-        let t526 = t505 + t5 * t510 + t147 * t516 + t9 * t523;
-        let t537 = c_proximal_leg1 * t291 + minus_gproximal_wy_leg1 * t310
-            + gdistal_wy_leg2 * t322 + minus_gproximal_wy_leg2 * t341
-            - (minus_gproximal_wy_leg3 * t282 + c_proximal_leg3 * t263);
-        let t547 = t537 - (minus_gproximal_wy_leg4 * t374 + minus_gdistal_wy_leg4 * t355)
-            + t28 * t382 + t128 * t388 + t31 * t395;
-        let t551 = gdistal_wy_leg2 * t474;
-        let t558 = c_proximal_leg1 * t448 - minus_gproximal_wy_leg1 * t443
-            - (t551 + minus_gproximal_wy_leg2 * t469)
-            - (minus_gproximal_wy_leg3 * t422 + c_proximal_leg3 * t405);
-        let t560 = minus_gdistal_wy_leg4 * t485;
-        let t568 = t558 - (minus_gproximal_wy_leg4 * t502 + t560) + t28 * t510
-            + t128 * t516 + t31 * t523;
-        let t579 = gproximal_wz_leg1 * t443 + t449 + gproximal_wz_leg2 * t469 + t551
-            + t406 - minus_gproximal_wz_leg3 * t422
-            - (minus_gproximal_wz_leg4 * t502 + t560);
+        let t496 = t397 - minus_gproximal_wx_leg3 * t413
+            - (minus_gproximal_wx_leg1 * t434 + t440 + minus_gproximal_wx_leg2 * t460
+                - c_proximal_leg2 * t465) + c_proximal_leg4 * t476
+            - minus_gproximal_wx_leg4 * t493;
+        let t508 = parameters[64] * (t13 * t4)
+            + parameters[65] * (t13 * t124 + t138 * t4)
+            + parameters[66] * (t13 * t8 + t14 * t4);
+        let t519 = t508 + parameters[67] * (t138 * t124)
+            + parameters[68] * (t138 * t8 + t14 * t124) + parameters[69] * (t14 * t8);
+        let t520 = t496 + t519;
+        let t531 = c_proximal_leg1 * t279 + minus_gproximal_wy_leg1 * t298
+            + gdistal_wy_leg2 * t310 + minus_gproximal_wy_leg2 * t329
+            - (minus_gproximal_wy_leg3 * t270 + c_proximal_leg3 * t251);
+        let t545 = parameters[64] * (t27 * t27) + parameters[65] * (2.0 * (t27 * t122))
+            + parameters[66] * (2.0 * (t27 * t30));
+        let t555 = t545 + parameters[67] * (t122 * t122)
+            + parameters[68] * (2.0 * (t122 * t30)) + parameters[69] * (t30 * t30);
+        let t560 = gdistal_wy_leg2 * t465;
+        let t567 = c_proximal_leg1 * t439 - minus_gproximal_wy_leg1 * t434
+            - (t560 + minus_gproximal_wy_leg2 * t460)
+            - (minus_gproximal_wy_leg3 * t413 + c_proximal_leg3 * t396);
+        let t569 = minus_gdistal_wy_leg4 * t476;
+        let t583 = parameters[64] * (t27 * t4)
+            + parameters[65] * (t27 * t124 + t122 * t4)
+            + parameters[66] * (t27 * t8 + t30 * t4);
+        let t594 = t583 + parameters[67] * (t122 * t124)
+            + parameters[68] * (t122 * t8 + t30 * t124) + parameters[69] * (t30 * t8);
+        let t595 = t567 - (minus_gproximal_wy_leg4 * t493 + t569) + t594;
+        let t606 = gproximal_wz_leg1 * t434 + t440 + gproximal_wz_leg2 * t460 + t560
+            + t397 - minus_gproximal_wz_leg3 * t413
+            - (minus_gproximal_wz_leg4 * t493 + t569);
+        let t616 = parameters[64] * (t4 * t4) + parameters[65] * (2.0 * (t4 * t124))
+            + parameters[66] * (2.0 * (t4 * t8));
+        let t626 = t616 + parameters[67] * (t124 * t124)
+            + parameters[68] * (2.0 * (t124 * t8)) + parameters[69] * (t8 * t8);
         Ok([
-            [t256, t398, t526], [t398, t547, t568],
-            [t526, t568, t579 + t11 * t510 + t130 * t516 + t14 * t523],
+            [t70 - (t121 + t172) + t222 + t243, t389, t520],
+            [
+                t389,
+                t531 - (minus_gproximal_wy_leg4 * t362 + minus_gdistal_wy_leg4 * t343)
+                    + t555,
+                t595,
+            ],
+            [t520, t595, t606 + t626],
         ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -10076,7 +9844,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 3.
     ///
-    /// 700 operations (288 additions, 404 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 705 intermediates.
+    /// 719 operations (302 additions, 409 multiplications, 8 divisions), 4 square roots, 0 trigonometric pairs, 4 signs, 724 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -10085,351 +9853,353 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         parameters: &[f64; 73],
     ) -> Result<[f64; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t6 = 2.0 * pose[1];
-        let t7 = pose[3] * t6;
-        let t8 = pose[0] * t0;
-        let t9 = t7 + t8;
-        let t10 = t5 + t9;
-        let t11 = t7 - t8;
-        let t13 = 1.0 - pose[1] * t6;
-        let t14 = t13 - t1;
-        let t15 = t11 + t14;
-        let t16 = t15 - t10;
-        let t19 = 1.0 - 0.25 * (t16 * t16);
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[3] * t0;
+        let t2 = 2.0 * pose[2];
+        let t3 = pose[0] * t2;
+        let t4 = t1 - t3;
+        let t6 = 1.0 - pose[1] * t0;
+        let t7 = pose[2] * t2;
+        let t8 = t6 - t7;
+        let t9 = t4 + t8;
+        let t11 = 2.0 * pose[3];
+        let t12 = pose[3] * t11;
+        let t13 = 1.0 - t7 - t12;
+        let t14 = t1 + t3;
+        let t15 = t13 + t14;
+        let s_distal_leg3 = 0.5 * (t9 - t15);
+        let t19 = 1.0 - s_distal_leg3 * s_distal_leg3;
         ::overact::guard::reach(t19, "leg3")?;
         let c_distal_leg3 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t25 = 1.0 / (0.5 * (t10 * c_distal_leg3 + t15 * c_distal_leg3));
-        let t26 = pose[2] * t6;
-        let t27 = pose[0] * t3;
-        let t28 = t26 + t27;
-        let t29 = pose[3] * t0;
-        let t30 = pose[0] * t6;
-        let t31 = t29 - t30;
-        let t32 = t28 + t31;
-        let t33 = t10 + t15;
-        let s_proximal_leg3 = t25 * (0.35355339059327373 * (t32 * t33));
+        let t21 = t15 + t9;
+        let t24 = 1.0 / (0.5 * (c_distal_leg3 * t21));
+        let t25 = pose[2] * t0;
+        let t26 = pose[0] * t11;
+        let t27 = t25 + t26;
+        let t28 = pose[3] * t2;
+        let t29 = pose[0] * t0;
+        let t30 = t28 - t29;
+        let s_proximal_leg3 = t24 * (0.35355339059327373 * ((t27 + t30) * t21));
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let s_distal_leg3 = 0.5 * t16;
-        let c_proximal_leg3 = t25 * (0.25 * (t33 * t33));
-        let t42 = s_distal_leg3 * c_proximal_leg3;
-        let t44 = 0.7071067811865475 * (t42 + c_distal_leg3);
-        let t46 = s_distal_leg3 * s_proximal_leg3;
-        let t49 = t42 - c_distal_leg3;
-        let t50 = 0.7071067811865475 * t49;
-        let t52 = t44 * twist[0] + t46 * twist[1] + t50 * twist[2];
-        let t53 = 1.0 / c_distal_leg3;
-        let t54 = s_distal_leg3 * t53;
-        let t55 = t54 * t52;
-        let t56 = t52 * t55;
-        let t58 = t52 * t52;
-        let t59 = t55 * t55;
+        let c_proximal_leg3 = t24 * (0.25 * (t21 * t21));
+        let t39 = s_distal_leg3 * c_proximal_leg3;
+        let t41 = 0.7071067811865475 * (t39 + c_distal_leg3);
+        let t43 = s_distal_leg3 * s_proximal_leg3;
+        let t46 = t39 - c_distal_leg3;
+        let t47 = 0.7071067811865475 * t46;
+        let t49 = t41 * twist[0] + t43 * twist[1] + t47 * twist[2];
+        let t50 = 1.0 / c_distal_leg3;
+        let t51 = s_distal_leg3 * t50;
+        let t52 = t51 * t49;
+        let t53 = t49 * t52;
+        let t55 = t49 * t49;
+        let t56 = t52 * t52;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t68 = rate_distal_leg3 * t55;
-        let minus_rate_wrist_leg3 = t55 + 0.7071067811865475 * t10 * twist[0]
-            + 0.7071067811865475 * t32 * twist[1] + 0.7071067811865475 * t15 * twist[2];
-        let t78 = rate_distal_leg3 * minus_rate_wrist_leg3;
-        let t79 = t68 + t78;
-        let t84 = t54 * t79;
-        let t86 = parameters[39] * t56 + parameters[40] * (t58 - t59)
-            + parameters[41] * t79 - parameters[42] * t56 - parameters[43] * t84;
-        let minus_rate_dot_distal_leg3 = t52 * minus_rate_wrist_leg3;
-        let t90 = 6.936717523440031 * c_proximal_leg3;
-        let t93 = c_distal_leg3 * t90 + 3.4683587617200153 * t16;
-        let t96 = 6.936717523440031 * t49;
-        let t98 = t86 - parameters[44] * minus_rate_dot_distal_leg3
-            + parameters[45] * t93 - parameters[46] * t96;
-        let t99 = gdistal_wx_leg3 * t98;
-        let minus_gproximal_wx_leg3 = t44 * t53;
-        let minus_rate_dot_proximal_leg3 = t53 * t79;
-        let minus_rate_proximal_leg3 = t53 * t52;
-        let t110 = 6.936717523440031 * s_proximal_leg3;
-        let t115 = parameters[38]
+        let t65 = rate_distal_leg3 * t52;
+        let t70 = t13 * twist[0] + t27 * twist[1] + t4 * twist[2];
+        let t75 = t14 * twist[0] + t30 * twist[1] + t8 * twist[2];
+        let minus_rate_wrist_leg3 = t52 + 0.7071067811865475 * (t70 + t75);
+        let t79 = rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t80 = t65 + t79;
+        let t85 = t51 * t80;
+        let t87 = parameters[39] * t53 + parameters[40] * (t55 - t56)
+            + parameters[41] * t80 - parameters[42] * t53 - parameters[43] * t85;
+        let minus_rate_dot_distal_leg3 = t49 * minus_rate_wrist_leg3;
+        let t91 = t9 * 6.936717523440031;
+        let t94 = 6.936717523440031 * t46;
+        let t96 = t87 - parameters[44] * minus_rate_dot_distal_leg3
+            + parameters[45] * t91 - parameters[46] * t94;
+        let t97 = gdistal_wx_leg3 * t96;
+        let minus_gproximal_wx_leg3 = t41 * t50;
+        let minus_rate_dot_proximal_leg3 = t50 * t80;
+        let minus_rate_proximal_leg3 = t50 * t49;
+        let t108 = 6.936717523440031 * s_proximal_leg3;
+        let t114 = parameters[38]
             - (parameters[35] * minus_rate_dot_proximal_leg3
                 + parameters[36] * minus_rate_proximal_leg3
                 + ::overact::math::signed(parameters[37], minus_rate_proximal_leg3))
-            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t110
-                + parameters[34] * t90);
-        let t116 = t52 * rate_distal_leg3;
-        let t121 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_wrist_leg3 = t84 + t116;
-        let t130 = parameters[39] * t116 + parameters[40] * (t78 - t68)
-            + parameters[41] * (t121 - t58) - parameters[42] * minus_rate_dot_wrist_leg3
-            - parameters[43] * (minus_rate_dot_distal_leg3 - t56);
-        let t149 = parameters[39] * t78
-            - parameters[40] * (t116 + minus_rate_dot_wrist_leg3)
-            - parameters[41] * (t56 + minus_rate_dot_distal_leg3) + parameters[42] * t68
-            + parameters[43] * (t59 - t121);
-        let t157 = s_distal_leg3
-            * (t130 - parameters[44] * t116 - parameters[45] * t110
-                + parameters[47] * t96)
+            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t108
+                + parameters[34] * (6.936717523440031 * c_proximal_leg3));
+        let t115 = t49 * rate_distal_leg3;
+        let t120 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_wrist_leg3 = t85 + t115;
+        let t129 = parameters[39] * t115 + parameters[40] * (t79 - t65)
+            + parameters[41] * (t120 - t55) - parameters[42] * minus_rate_dot_wrist_leg3
+            - parameters[43] * (minus_rate_dot_distal_leg3 - t53);
+        let t148 = parameters[39] * t79
+            - parameters[40] * (t115 + minus_rate_dot_wrist_leg3)
+            - parameters[41] * (t53 + minus_rate_dot_distal_leg3) + parameters[42] * t65
+            + parameters[43] * (t56 - t120);
+        let t156 = s_distal_leg3
+            * (t129 - parameters[44] * t115 - parameters[45] * t108
+                + parameters[47] * t94)
             - c_distal_leg3
-                * (t149 - parameters[44] * t68 + parameters[46] * t110
-                    - parameters[47] * t93);
-        let t158 = t115 + t157;
-        let t161 = t5 - t9;
-        let t162 = t11 - t14;
-        let t163 = t161 + t162;
-        let minus_s_distal_leg1 = 0.5 * t163;
-        let t167 = 1.0 - 0.25 * (t163 * t163);
-        ::overact::guard::reach(t167, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t167);
+                * (t148 - parameters[44] * t65 + parameters[46] * t108
+                    - parameters[47] * t91);
+        let t157 = t114 + t156;
+        let t160 = t13 - t14;
+        let t161 = t4 - t8;
+        let minus_s_distal_leg1 = 0.5 * (t160 + t161);
+        let t164 = t160 - t161;
+        let t168 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t168, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t168);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t173 = 1.0 / (0.5 * (t161 * c_distal_leg1 - t162 * c_distal_leg1));
-        let t174 = t161 - t162;
-        let c_proximal_leg1 = t173 * (0.25 * (t174 * t174));
-        let t178 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t180 = 0.7071067811865475 * (t178 - c_distal_leg1);
-        let t181 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t180 * t181;
-        let t184 = t28 - t31;
-        let s_proximal_leg1 = t173 * (0.35355339059327373 * (t184 * t174));
+        let c_proximal_leg1 = 0.25 * (t164 * t164) / (0.5 * (c_distal_leg1 * t164));
+        let t173 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t175 = 0.7071067811865475 * (t173 - c_distal_leg1);
+        let t176 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = t175 * t176;
+        let t180 = 0.7071067811865475 * (t27 - t30);
+        let s_proximal_leg1 = t176 * t180;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t193 = minus_s_distal_leg1 * t181;
-        let t195 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t198 = t178 + c_distal_leg1;
-        let t199 = 0.7071067811865475 * t198;
-        let t201 = t180 * twist[0] + t195 * twist[1] - t199 * twist[2];
-        let t202 = t193 * t201;
-        let t203 = rate_distal_leg1 * t202;
-        let rate_wrist_leg1 = t202 + 0.7071067811865475 * t161 * twist[0]
-            + 0.7071067811865475 * t184 * twist[1]
-            + 0.7071067811865475 * t162 * twist[2];
-        let t213 = rate_distal_leg1 * rate_wrist_leg1;
-        let t214 = t203 + t213;
-        let rate_dot_proximal_leg1 = t181 * t214;
-        let t217 = 6.936717523440031 * s_proximal_leg1;
-        let t220 = 6.936717523440031 * c_proximal_leg1;
-        let minus_rate_proximal_leg1 = t181 * t201;
-        let t230 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t217
-            - parameters[2] * t220 + parameters[3] * rate_dot_proximal_leg1
+        let t187 = minus_s_distal_leg1 * t176;
+        let t189 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t192 = t173 + c_distal_leg1;
+        let t193 = 0.7071067811865475 * t192;
+        let t195 = t175 * twist[0] + t189 * twist[1] - t193 * twist[2];
+        let t196 = t187 * t195;
+        let t197 = rate_distal_leg1 * t196;
+        let rate_wrist_leg1 = t196 + 0.7071067811865475 * t160 * twist[0]
+            + t180 * twist[1] + 0.7071067811865475 * t161 * twist[2];
+        let t206 = rate_distal_leg1 * rate_wrist_leg1;
+        let t207 = t197 + t206;
+        let rate_dot_proximal_leg1 = t176 * t207;
+        let t210 = 6.936717523440031 * s_proximal_leg1;
+        let minus_rate_proximal_leg1 = t176 * t195;
+        let t223 = parameters[0] * rate_dot_proximal_leg1 - parameters[1] * t210
+            - parameters[2] * (6.936717523440031 * c_proximal_leg1)
+            + parameters[3] * rate_dot_proximal_leg1
             - parameters[4] * minus_rate_proximal_leg1
             - ::overact::math::signed(parameters[5], minus_rate_proximal_leg1)
             + parameters[6];
-        let t231 = t201 * t202;
-        let rate_dot_distal_leg1 = t201 * rate_wrist_leg1;
-        let t236 = t201 * rate_distal_leg1;
-        let t237 = t193 * t214;
-        let minus_rate_dot_wrist_leg1 = t237 + t236;
-        let t245 = t202 * t202;
-        let t246 = rate_distal_leg1 * rate_distal_leg1;
-        let t249 = parameters[9] * (t231 + rate_dot_distal_leg1)
-            - (parameters[7] * t213 + parameters[8] * (t236 + minus_rate_dot_wrist_leg1))
-            - parameters[10] * t203 + parameters[11] * (t245 - t246);
-        let t256 = c_distal_leg1 * t220 - 3.4683587617200153 * t163;
-        let t264 = t201 * t201;
-        let t272 = parameters[7] * t236 + parameters[8] * (t203 - t213)
-            + parameters[9] * (t246 - t264) - parameters[10] * minus_rate_dot_wrist_leg1
-            - parameters[11] * (t231 - rate_dot_distal_leg1);
-        let t277 = 6.936717523440031 * t198;
-        let t281 = c_distal_leg1
-            * (t249 + parameters[12] * t203 + parameters[14] * t217
-                - parameters[15] * t256)
+        let t224 = t195 * t196;
+        let rate_dot_distal_leg1 = t195 * rate_wrist_leg1;
+        let t229 = t195 * rate_distal_leg1;
+        let t230 = t187 * t207;
+        let minus_rate_dot_wrist_leg1 = t230 + t229;
+        let t238 = t196 * t196;
+        let t239 = rate_distal_leg1 * rate_distal_leg1;
+        let t242 = parameters[9] * (t224 + rate_dot_distal_leg1)
+            - (parameters[7] * t206 + parameters[8] * (t229 + minus_rate_dot_wrist_leg1))
+            - parameters[10] * t197 + parameters[11] * (t238 - t239);
+        let t247 = 6.936717523440031 * t161;
+        let t255 = t195 * t195;
+        let t263 = parameters[7] * t229 + parameters[8] * (t197 - t206)
+            + parameters[9] * (t239 - t255) - parameters[10] * minus_rate_dot_wrist_leg1
+            - parameters[11] * (t224 - rate_dot_distal_leg1);
+        let t268 = 6.936717523440031 * t192;
+        let t272 = c_distal_leg1
+            * (t242 + parameters[12] * t197 + parameters[14] * t210
+                + parameters[15] * t247)
             + minus_s_distal_leg1
-                * (t272 - parameters[12] * t236 - parameters[13] * t217
-                    - parameters[15] * t277);
-        let t282 = t230 - t281;
-        let t293 = parameters[8] * (t264 - t245) - parameters[7] * t231
-            - parameters[9] * t214 + parameters[10] * t231 - parameters[11] * t237;
-        let t299 = t293 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t256
-            + parameters[14] * t277;
-        let t300 = minus_gdistal_wx_leg1 * t299;
-        let t302 = t13 - t4;
-        let t303 = t302 - t31;
-        let t304 = t29 + t30;
-        let t305 = t304 - t14;
-        let t306 = t303 + t305;
-        let minus_s_distal_leg2 = 0.5 * t306;
-        let t310 = 1.0 - 0.25 * (t306 * t306);
-        ::overact::guard::reach(t310, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t310);
+                * (t263 - parameters[12] * t229 - parameters[13] * t210
+                    - parameters[15] * t268);
+        let t273 = t223 - t272;
+        let t284 = parameters[8] * (t255 - t238) - parameters[7] * t224
+            - parameters[9] * t207 + parameters[10] * t224 - parameters[11] * t230;
+        let t290 = t284 + parameters[12] * rate_dot_distal_leg1 - parameters[13] * t247
+            + parameters[14] * t268;
+        let t291 = minus_gdistal_wx_leg1 * t290;
+        let t293 = t6 - t12;
+        let t294 = t293 - t30;
+        let t295 = t28 + t29;
+        let t296 = t295 - t8;
+        let minus_s_distal_leg2 = 0.5 * (t294 + t296);
+        let t300 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t300, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t300);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t316 = 1.0 / (0.5 * (t303 * c_distal_leg2 - t305 * c_distal_leg2));
-        let t317 = t26 - t27;
-        let t318 = t317 - t9;
-        let t319 = t303 - t305;
-        let minus_s_proximal_leg2 = t316 * (0.35355339059327373 * (t318 * t319));
-        let t323 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let t324 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t323 * t324;
+        let t302 = 1.0 / c_distal_leg2;
+        let t303 = t25 - t26;
+        let t305 = 0.7071067811865475 * (t303 - t14);
+        let minus_s_proximal_leg2 = t302 * t305;
+        let t307 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t307 * t302;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let c_proximal_leg2 = t316 * (0.25 * (t319 * t319));
+        let t311 = t294 - t296;
+        let c_proximal_leg2 = 0.25 * (t311 * t311) / (0.5 * (c_distal_leg2 * t311));
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t335 = minus_s_distal_leg2 * t324;
-        let t337 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t339 = 0.7071067811865475 * (t337 - c_distal_leg2);
-        let t342 = t337 + c_distal_leg2;
-        let t343 = 0.7071067811865475 * t342;
-        let t345 = t323 * twist[0] + t339 * twist[1] - t343 * twist[2];
-        let t346 = t335 * t345;
-        let t347 = rate_distal_leg2 * t346;
-        let rate_wrist_leg2 = t346 + 0.7071067811865475 * t318 * twist[0]
-            + 0.7071067811865475 * t303 * twist[1]
-            + 0.7071067811865475 * t305 * twist[2];
-        let t357 = rate_distal_leg2 * rate_wrist_leg2;
-        let t358 = t347 + t357;
-        let rate_dot_proximal_leg2 = t324 * t358;
-        let t361 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t364 = 6.936717523440031 * c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t324 * t345;
-        let t374 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t361
-            - parameters[18] * t364 + parameters[19] * rate_dot_proximal_leg2
+        let t321 = minus_s_distal_leg2 * t302;
+        let t323 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t325 = 0.7071067811865475 * (t323 - c_distal_leg2);
+        let t328 = t323 + c_distal_leg2;
+        let t329 = 0.7071067811865475 * t328;
+        let t331 = t307 * twist[0] + t325 * twist[1] - t329 * twist[2];
+        let t332 = t321 * t331;
+        let t333 = rate_distal_leg2 * t332;
+        let rate_wrist_leg2 = t332 + t305 * twist[0]
+            + 0.7071067811865475 * t294 * twist[1]
+            + 0.7071067811865475 * t296 * twist[2];
+        let t342 = rate_distal_leg2 * rate_wrist_leg2;
+        let t343 = t333 + t342;
+        let rate_dot_proximal_leg2 = t302 * t343;
+        let t346 = 6.936717523440031 * minus_s_proximal_leg2;
+        let minus_rate_proximal_leg2 = t302 * t331;
+        let t359 = parameters[16] * rate_dot_proximal_leg2 + parameters[17] * t346
+            - parameters[18] * (6.936717523440031 * c_proximal_leg2)
+            + parameters[19] * rate_dot_proximal_leg2
             - parameters[20] * minus_rate_proximal_leg2
             - ::overact::math::signed(parameters[21], minus_rate_proximal_leg2)
             + parameters[22];
-        let t375 = t345 * t346;
-        let rate_dot_distal_leg2 = t345 * rate_wrist_leg2;
-        let t380 = t345 * rate_distal_leg2;
-        let t381 = t335 * t358;
-        let minus_rate_dot_wrist_leg2 = t381 + t380;
-        let t389 = t346 * t346;
-        let t390 = rate_distal_leg2 * rate_distal_leg2;
-        let t393 = parameters[25] * (t375 + rate_dot_distal_leg2)
-            - (parameters[23] * t357
-                + parameters[24] * (t380 + minus_rate_dot_wrist_leg2))
-            - parameters[26] * t347 + parameters[27] * (t389 - t390);
-        let t400 = c_distal_leg2 * t364 - 3.4683587617200153 * t306;
-        let t408 = t345 * t345;
-        let t416 = parameters[23] * t380 + parameters[24] * (t347 - t357)
-            + parameters[25] * (t390 - t408) - parameters[26] * minus_rate_dot_wrist_leg2
-            - parameters[27] * (t375 - rate_dot_distal_leg2);
-        let t421 = 6.936717523440031 * t342;
-        let t425 = c_distal_leg2
-            * (t393 + parameters[28] * t347 - parameters[30] * t361
-                - parameters[31] * t400)
+        let t360 = t331 * t332;
+        let rate_dot_distal_leg2 = t331 * rate_wrist_leg2;
+        let t365 = t331 * rate_distal_leg2;
+        let t366 = t321 * t343;
+        let minus_rate_dot_wrist_leg2 = t366 + t365;
+        let t374 = t332 * t332;
+        let t375 = rate_distal_leg2 * rate_distal_leg2;
+        let t378 = parameters[25] * (t360 + rate_dot_distal_leg2)
+            - (parameters[23] * t342
+                + parameters[24] * (t365 + minus_rate_dot_wrist_leg2))
+            - parameters[26] * t333 + parameters[27] * (t374 - t375);
+        let t383 = 6.936717523440031 * t296;
+        let t391 = t331 * t331;
+        let t399 = parameters[23] * t365 + parameters[24] * (t333 - t342)
+            + parameters[25] * (t375 - t391) - parameters[26] * minus_rate_dot_wrist_leg2
+            - parameters[27] * (t360 - rate_dot_distal_leg2);
+        let t404 = 6.936717523440031 * t328;
+        let t408 = c_distal_leg2
+            * (t378 + parameters[28] * t333 - parameters[30] * t346
+                + parameters[31] * t383)
             + minus_s_distal_leg2
-                * (t416 - parameters[28] * t380 + parameters[29] * t361
-                    - parameters[31] * t421);
-        let t426 = t374 - t425;
-        let t437 = parameters[24] * (t408 - t389) - parameters[23] * t375
-            - parameters[25] * t358 + parameters[26] * t375 - parameters[27] * t381;
-        let t443 = t437 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t400
-            + parameters[30] * t421;
-        let t448 = t302 + t31;
-        let t449 = t304 + t14;
-        let t450 = t449 - t448;
-        let t453 = 1.0 - 0.25 * (t450 * t450);
-        ::overact::guard::reach(t453, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t453);
+                * (t399 - parameters[28] * t365 + parameters[29] * t346
+                    - parameters[31] * t404);
+        let t409 = t359 - t408;
+        let t420 = parameters[24] * (t391 - t374) - parameters[23] * t360
+            - parameters[25] * t343 + parameters[26] * t360 - parameters[27] * t366;
+        let t426 = t420 + parameters[28] * rate_dot_distal_leg2 - parameters[29] * t383
+            + parameters[30] * t404;
+        let t431 = t295 + t8;
+        let t432 = t293 + t30;
+        let s_distal_leg4 = 0.5 * (t431 - t432);
+        let t436 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t436, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t436);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t459 = 1.0 / (0.5 * (t448 * c_distal_leg4 + t449 * c_distal_leg4));
-        let t460 = t448 + t449;
-        let c_proximal_leg4 = t459 * (0.25 * (t460 * t460));
-        let s_distal_leg4 = 0.5 * t450;
-        let t465 = t317 + t9;
-        let minus_s_proximal_leg4 = t459 * (0.35355339059327373 * (t465 * t460));
-        let t469 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t471 = s_distal_leg4 * c_proximal_leg4;
-        let t473 = 0.7071067811865475 * (t471 + c_distal_leg4);
-        let t476 = t471 - c_distal_leg4;
-        let t477 = 0.7071067811865475 * t476;
-        let t479 = t469 * twist[0] + t473 * twist[1] + t477 * twist[2];
-        let t480 = 1.0 / c_distal_leg4;
-        let t481 = s_distal_leg4 * t480;
-        let t482 = t481 * t479;
-        let t483 = t479 * t482;
-        let t485 = t479 * t479;
-        let t486 = t482 * t482;
+        let t438 = t432 + t431;
+        let t441 = 1.0 / (0.5 * (c_distal_leg4 * t438));
+        let c_proximal_leg4 = t441 * (0.25 * (t438 * t438));
+        let minus_s_proximal_leg4 = t441 * (0.35355339059327373 * ((t303 + t14) * t438));
+        let t449 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t451 = s_distal_leg4 * c_proximal_leg4;
+        let t453 = 0.7071067811865475 * (t451 + c_distal_leg4);
+        let t456 = t451 - c_distal_leg4;
+        let t457 = 0.7071067811865475 * t456;
+        let t459 = t449 * twist[0] + t453 * twist[1] + t457 * twist[2];
+        let t460 = 1.0 / c_distal_leg4;
+        let t461 = s_distal_leg4 * t460;
+        let t462 = t461 * t459;
+        let t463 = t459 * t462;
+        let t465 = t459 * t459;
+        let t466 = t462 * t462;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t496 = rate_distal_leg4 * t482;
-        let minus_rate_wrist_leg4 = t482 + 0.7071067811865475 * t465 * twist[0]
-            + 0.7071067811865475 * t448 * twist[1]
-            + 0.7071067811865475 * t449 * twist[2];
-        let t506 = rate_distal_leg4 * minus_rate_wrist_leg4;
-        let t507 = t496 + t506;
-        let t512 = t481 * t507;
-        let t514 = parameters[55] * t483 + parameters[56] * (t485 - t486)
-            + parameters[57] * t507 - parameters[58] * t483 - parameters[59] * t512;
-        let minus_rate_dot_distal_leg4 = t479 * minus_rate_wrist_leg4;
-        let t518 = 6.936717523440031 * c_proximal_leg4;
-        let t521 = c_distal_leg4 * t518 + 3.4683587617200153 * t450;
-        let t524 = 6.936717523440031 * t476;
-        let t526 = t514 - parameters[60] * minus_rate_dot_distal_leg4
-            + parameters[61] * t521 - parameters[62] * t524;
-        let minus_gproximal_wx_leg4 = t469 * t480;
-        let t529 = 6.936717523440031 * minus_s_proximal_leg4;
-        let minus_rate_dot_proximal_leg4 = t480 * t507;
-        let minus_rate_proximal_leg4 = t480 * t479;
-        let t543 = parameters[49] * t529 - parameters[48] * minus_rate_dot_proximal_leg4
-            - parameters[50] * t518 + parameters[54]
+        let t476 = rate_distal_leg4 * t462;
+        let t481 = t303 * twist[0] + t293 * twist[1] + t295 * twist[2];
+        let minus_rate_wrist_leg4 = t462 + 0.7071067811865475 * (t481 + t75);
+        let t485 = rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t486 = t476 + t485;
+        let t491 = t461 * t486;
+        let t493 = parameters[55] * t463 + parameters[56] * (t465 - t466)
+            + parameters[57] * t486 - parameters[58] * t463 - parameters[59] * t491;
+        let minus_rate_dot_distal_leg4 = t459 * minus_rate_wrist_leg4;
+        let t497 = 6.936717523440031 * t431;
+        let t500 = 6.936717523440031 * t456;
+        let t502 = t493 - parameters[60] * minus_rate_dot_distal_leg4
+            + parameters[61] * t497 - parameters[62] * t500;
+        let minus_gproximal_wx_leg4 = t449 * t460;
+        let t505 = 6.936717523440031 * minus_s_proximal_leg4;
+        let minus_rate_dot_proximal_leg4 = t460 * t486;
+        let minus_rate_proximal_leg4 = t460 * t459;
+        let t520 = parameters[49] * t505 - parameters[48] * minus_rate_dot_proximal_leg4
+            - parameters[50] * (6.936717523440031 * c_proximal_leg4) + parameters[54]
             - (parameters[51] * minus_rate_dot_proximal_leg4
                 + parameters[52] * minus_rate_proximal_leg4
                 + ::overact::math::signed(parameters[53], minus_rate_proximal_leg4));
-        let t544 = t479 * rate_distal_leg4;
-        let t549 = rate_distal_leg4 * rate_distal_leg4;
-        let minus_rate_dot_wrist_leg4 = t512 + t544;
-        let t558 = parameters[55] * t544 + parameters[56] * (t506 - t496)
-            + parameters[57] * (t549 - t485) - parameters[58] * minus_rate_dot_wrist_leg4
-            - parameters[59] * (minus_rate_dot_distal_leg4 - t483);
-        let t577 = parameters[55] * t506
-            - parameters[56] * (t544 + minus_rate_dot_wrist_leg4)
-            - parameters[57] * (t483 + minus_rate_dot_distal_leg4)
-            + parameters[58] * t496 + parameters[59] * (t486 - t549);
-        let t585 = s_distal_leg4
-            * (t558 - parameters[60] * t544 + parameters[61] * t529
-                + parameters[63] * t524)
+        let t521 = t459 * rate_distal_leg4;
+        let t526 = rate_distal_leg4 * rate_distal_leg4;
+        let minus_rate_dot_wrist_leg4 = t491 + t521;
+        let t535 = parameters[55] * t521 + parameters[56] * (t485 - t476)
+            + parameters[57] * (t526 - t465) - parameters[58] * minus_rate_dot_wrist_leg4
+            - parameters[59] * (minus_rate_dot_distal_leg4 - t463);
+        let t554 = parameters[55] * t485
+            - parameters[56] * (t521 + minus_rate_dot_wrist_leg4)
+            - parameters[57] * (t463 + minus_rate_dot_distal_leg4)
+            + parameters[58] * t476 + parameters[59] * (t466 - t526);
+        let t562 = s_distal_leg4
+            * (t535 - parameters[60] * t521 + parameters[61] * t505
+                + parameters[63] * t500)
             - c_distal_leg4
-                * (t577 - parameters[60] * t496 - parameters[62] * t529
-                    - parameters[63] * t521);
-        let t586 = t543 + t585;
-        let t589 = t99 - minus_gproximal_wx_leg3 * t158
-            - (minus_gproximal_wx_leg1 * t282 + t300 + minus_gproximal_wx_leg2 * t426
-                + c_proximal_leg2 * t443) + c_proximal_leg4 * t526
-            - minus_gproximal_wx_leg4 * t586;
-        let t594 = t5 * twist[0] + t28 * twist[1] + t11 * twist[2];
-        let t599 = t317 * twist[0] + t302 * twist[1] + t304 * twist[2];
-        let t600 = t594 * t599;
-        let t606 = t9 * twist[0] + t31 * twist[1] + t14 * twist[2];
-        let t607 = t594 * t606;
-        let t610 = t599 * t606;
-        let t613 = t599 * t599;
-        let t614 = t606 * t606;
-        let t619 = parameters[66] * t600 - parameters[65] * t607 - parameters[67] * t610
-            + parameters[68] * (t613 - t614) + parameters[69] * t610;
-        let t620 = 9.81 * t14;
-        let t623 = 9.81 * t304;
-        let t625 = t619 + parameters[71] * t620 - parameters[72] * t623;
-        let t630 = t594 * t594;
-        let t637 = parameters[64] * t607 + parameters[65] * t610
-            + parameters[66] * (t614 - t630) - parameters[68] * t600
-            - parameters[69] * t607;
-        let t640 = 9.81 * t11;
-        let t642 = t637 - parameters[70] * t620 + parameters[72] * t640;
-        let t654 = parameters[65] * (t630 - t613) - parameters[64] * t600
-            - parameters[66] * t610 + parameters[67] * t600 + parameters[68] * t607;
-        let t658 = t654 + parameters[70] * t623 - parameters[71] * t640;
-        let minus_gproximal_wy_leg1 = t195 * t181;
-        let t666 = gdistal_wy_leg2 * t443;
-        let minus_gproximal_wy_leg2 = t339 * t324;
-        let minus_gproximal_wy_leg3 = t46 * t53;
-        let t675 = c_proximal_leg1 * t299 - minus_gproximal_wy_leg1 * t282 + t666
-            - minus_gproximal_wy_leg2 * t426
-            - (minus_gproximal_wy_leg3 * t158 + c_proximal_leg3 * t98);
-        let minus_gproximal_wy_leg4 = t473 * t480;
-        let t678 = minus_gdistal_wy_leg4 * t526;
-        let gproximal_wz_leg1 = t199 * t181;
-        let gproximal_wz_leg2 = t343 * t324;
-        let minus_gproximal_wz_leg3 = t50 * t53;
-        let minus_gproximal_wz_leg4 = t477 * t480;
-        let t701 = gproximal_wz_leg1 * t282 + t300 + gproximal_wz_leg2 * t426 - t666
-            + t99 - minus_gproximal_wz_leg3 * t158
-            - (minus_gproximal_wz_leg4 * t586 + t678);
+                * (t554 - parameters[60] * t476 - parameters[62] * t505
+                    - parameters[63] * t497);
+        let t563 = t520 + t562;
+        let t566 = t97 - minus_gproximal_wx_leg3 * t157
+            - (minus_gproximal_wx_leg1 * t273 + t291 + minus_gproximal_wx_leg2 * t409
+                + c_proximal_leg2 * t426) + c_proximal_leg4 * t502
+            - minus_gproximal_wx_leg4 * t563;
+        let t567 = t70 * t75;
+        let t568 = t303 * t567;
+        let t569 = t70 * t481;
+        let t570 = t14 * t569;
+        let t573 = t481 * t75;
+        let t577 = t70 * t70;
+        let t578 = t481 * t481;
+        let t579 = t577 - t578;
+        let t585 = t75 * t75;
+        let t586 = t585 - t577;
+        let t592 = parameters[64] * (t568 - t570)
+            + parameters[65] * (t303 * t573 - t13 * t567 + t14 * t579)
+            + parameters[66] * (t13 * t569 + t303 * t586 - t14 * t573);
+        let t593 = t13 * t573;
+        let t597 = t578 - t585;
+        let t604 = t592 + parameters[67] * (t570 - t593)
+            + parameters[68] * (t13 * t597 - t303 * t569 + t14 * t567);
+        let t616 = t604 + parameters[69] * (t593 - t568) + parameters[70] * (9.81 * t27)
+            + parameters[71] * (9.81 * t293) + parameters[72] * (9.81 * t30);
+        let minus_gproximal_wy_leg1 = t189 * t176;
+        let t622 = gdistal_wy_leg2 * t426;
+        let minus_gproximal_wy_leg2 = t325 * t302;
+        let minus_gproximal_wy_leg3 = t43 * t50;
+        let t631 = c_proximal_leg1 * t290 - minus_gproximal_wy_leg1 * t273 + t622
+            - minus_gproximal_wy_leg2 * t409
+            - (minus_gproximal_wy_leg3 * t157 + c_proximal_leg3 * t96);
+        let minus_gproximal_wy_leg4 = t453 * t460;
+        let t634 = minus_gdistal_wy_leg4 * t502;
+        let t637 = t293 * t567;
+        let t638 = t30 * t569;
+        let t654 = parameters[64] * (t637 - t638)
+            + parameters[65] * (t293 * t573 - t27 * t567 + t30 * t579)
+            + parameters[66] * (t27 * t569 + t293 * t586 - t30 * t573);
+        let t655 = t27 * t573;
+        let t665 = t654 + parameters[67] * (t638 - t655)
+            + parameters[68] * (t27 * t597 - t293 * t569 + t30 * t567);
+        let t677 = t665 + parameters[69] * (t655 - t637) - parameters[70] * (9.81 * t13)
+            - parameters[71] * (9.81 * t303) - parameters[72] * (9.81 * t14);
+        let gproximal_wz_leg1 = t193 * t176;
+        let gproximal_wz_leg2 = t329 * t302;
+        let minus_gproximal_wz_leg3 = t47 * t50;
+        let minus_gproximal_wz_leg4 = t457 * t460;
+        let t693 = gproximal_wz_leg1 * t273 + t291 + gproximal_wz_leg2 * t409 - t622
+            + t97 - minus_gproximal_wz_leg3 * t157
+            - (minus_gproximal_wz_leg4 * t563 + t634);
+        let t694 = t295 * t567;
+        let t695 = t8 * t569;
+        let t711 = parameters[64] * (t694 - t695)
+            + parameters[65] * (t295 * t573 - t4 * t567 + t8 * t579)
+            + parameters[66] * (t4 * t569 + t295 * t586 - t8 * t573);
+        let t712 = t4 * t573;
+        let t722 = t711 + parameters[67] * (t695 - t712)
+            + parameters[68] * (t4 * t597 - t295 * t569 + t8 * t567);
         Ok([
-            t589 + t5 * t625 + t317 * t642 + t9 * t658,
-            t675 - (minus_gproximal_wy_leg4 * t586 + t678) + t28 * t625 + t302 * t642
-                + t31 * t658,
-            t701 + t11 * t625 + t304 * t642 + t14 * t658,
+            t566 + t616, t631 - (minus_gproximal_wy_leg4 * t563 + t634) + t677,
+            t693 + t722 + parameters[69] * (t712 - t694),
         ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
@@ -10443,7 +10213,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 918 operations (386 additions, 520 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 4 signs, 923 intermediates.
+    /// 949 operations (406 additions, 531 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 4 signs, 954 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -10468,424 +10238,429 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t18 = t10 - t15;
+        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t32 = t31 + c_distal_leg1;
-        let t33 = 0.7071067811865475 * t32;
-        let t34 = 1.0 / c_distal_leg1;
-        let gproximal_wz_leg1 = t33 * t34;
-        let t37 = t13 - t4;
-        let t38 = pose[3] * t0;
-        let t39 = pose[0] * t6;
-        let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let c_proximal_leg1 = 0.25 * (t18 * t18) / (0.5 * (c_distal_leg1 * t18));
+        let t27 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t28 = t27 + c_distal_leg1;
+        let t29 = 0.7071067811865475 * t28;
+        let t30 = 1.0 / c_distal_leg1;
+        let gproximal_wz_leg1 = t29 * t30;
+        let t33 = t13 - t4;
+        let t34 = pose[3] * t0;
+        let t35 = pose[0] * t6;
+        let t36 = t34 - t35;
+        let t37 = t33 - t36;
+        let t38 = t34 + t35;
+        let t39 = t38 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t37 + t39);
+        let t42 = t37 - t39;
+        let t46 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t46, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t46);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = t41 - t43;
-        let c_proximal_leg2 = t54 * (0.25 * (t55 * t55));
-        let t59 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t60 = t59 + c_distal_leg2;
-        let t61 = 0.7071067811865475 * t60;
-        let t62 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t61 * t62;
-        let t66 = t11 + t14;
-        let t67 = t5 + t9;
-        let t68 = t66 - t67;
-        let s_distal_leg3 = 0.5 * t68;
-        let t72 = 1.0 - 0.25 * (t68 * t68);
-        ::overact::guard::reach(t72, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t72);
+        let c_proximal_leg2 = 0.25 * (t42 * t42) / (0.5 * (c_distal_leg2 * t42));
+        let t51 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t52 = t51 + c_distal_leg2;
+        let t53 = 0.7071067811865475 * t52;
+        let t54 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t53 * t54;
+        let t58 = t11 + t14;
+        let t59 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t58 - t59);
+        let t63 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t63, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t63);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t78 = 1.0 / (0.5 * (t67 * c_distal_leg3 + t66 * c_distal_leg3));
-        let t79 = t67 + t66;
-        let c_proximal_leg3 = t78 * (0.25 * (t79 * t79));
-        let t83 = s_distal_leg3 * c_proximal_leg3;
-        let t84 = t83 - c_distal_leg3;
-        let t85 = 0.7071067811865475 * t84;
-        let t86 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wz_leg3 = t85 * t86;
-        let t90 = t42 + t14;
-        let t91 = t37 + t40;
-        let t92 = t90 - t91;
-        let s_distal_leg4 = 0.5 * t92;
-        let t96 = 1.0 - 0.25 * (t92 * t92);
-        ::overact::guard::reach(t96, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t96);
+        let t65 = t59 + t58;
+        let t68 = 1.0 / (0.5 * (c_distal_leg3 * t65));
+        let c_proximal_leg3 = t68 * (0.25 * (t65 * t65));
+        let t72 = s_distal_leg3 * c_proximal_leg3;
+        let t73 = t72 - c_distal_leg3;
+        let t74 = 0.7071067811865475 * t73;
+        let t75 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wz_leg3 = t74 * t75;
+        let t79 = t38 + t14;
+        let t80 = t33 + t36;
+        let s_distal_leg4 = 0.5 * (t79 - t80);
+        let t84 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t84, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t84);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t102 = 1.0 / (0.5 * (t91 * c_distal_leg4 + t90 * c_distal_leg4));
-        let t103 = t91 + t90;
-        let c_proximal_leg4 = t102 * (0.25 * (t103 * t103));
-        let t107 = s_distal_leg4 * c_proximal_leg4;
-        let t108 = t107 - c_distal_leg4;
-        let t109 = 0.7071067811865475 * t108;
-        let t110 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wz_leg4 = t109 * t110;
-        let t115 = 0.7071067811865475 * (t83 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t115 * t86;
-        let t119 = 0.7071067811865475 * (t31 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t119 * t34;
-        let t122 = pose[2] * t6;
-        let t123 = pose[0] * t3;
-        let t124 = t122 - t123;
-        let t125 = t124 - t9;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * (t125 * t55));
-        let t129 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t129 * t62;
-        let t134 = t124 + t9;
-        let minus_s_proximal_leg4 = t102 * (0.35355339059327373 * (t134 * t103));
-        let t138 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t138 * t110;
-        let t141 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t86 = t80 + t79;
+        let t89 = 1.0 / (0.5 * (c_distal_leg4 * t86));
+        let c_proximal_leg4 = t89 * (0.25 * (t86 * t86));
+        let t93 = s_distal_leg4 * c_proximal_leg4;
+        let t94 = t93 - c_distal_leg4;
+        let t95 = 0.7071067811865475 * t94;
+        let t96 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wz_leg4 = t95 * t96;
+        let t101 = 0.7071067811865475 * (t72 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t101 * t75;
+        let t105 = 0.7071067811865475 * (t27 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t105 * t30;
+        let t108 = pose[2] * t6;
+        let t109 = pose[0] * t3;
+        let t110 = t108 - t109;
+        let t112 = 0.7071067811865475 * (t110 - t9);
+        let minus_s_proximal_leg2 = t54 * t112;
+        let t114 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t114 * t54;
+        let minus_s_proximal_leg4 = t89 * (0.35355339059327373 * ((t110 + t9) * t86));
+        let t123 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t123 * t96;
+        let t126 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t148 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t133 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
-        let t149 = 1.0 / t148;
-        let t150 = t141 * t149;
-        let t153 = t122 + t123;
-        let t154 = t153 + t40;
-        let s_proximal_leg3 = t78 * (0.35355339059327373 * (t154 * t79));
-        let t158 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t158 * t86;
-        let t161 = t153 - t40;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * (t161 * t27));
-        let t165 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t165 * t34;
-        let t169 = 0.7071067811865475 * (t59 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t169 * t62;
-        let t175 = 0.7071067811865475 * (t107 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t175 * t110;
-        let t185 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t133, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t133, 0.9999999999999998, "actuators")?;
+        let t134 = 1.0 / t133;
+        let t135 = t126 * t134;
+        let t138 = t108 + t109;
+        let s_proximal_leg3 = t68 * (0.35355339059327373 * ((t138 + t36) * t65));
+        let t143 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t143 * t75;
+        let t147 = 0.7071067811865475 * (t138 - t36);
+        let s_proximal_leg1 = t30 * t147;
+        let t149 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t149 * t30;
+        let t153 = 0.7071067811865475 * (t51 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t153 * t54;
+        let t159 = 0.7071067811865475 * (t93 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t159 * t96;
+        let t169 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t187 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t171 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t185 * t150;
-        let t195 = t185 * t149;
-        let t197 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t169 * t135;
+        let t179 = t169 * t134;
+        let t181 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t185 * t195;
-        ::overact::guard::platform(t197, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t197, 0.9999999999999998, "actuators")?;
-        let t198 = 1.0 / t197;
-        let t199 = t187 * t198;
-        let t201 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t169 * t179;
+        ::overact::guard::platform(t181, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t181, 0.9999999999999998, "actuators")?;
+        let t182 = 1.0 / t181;
+        let t183 = t171 * t182;
+        let t185 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t141 * t150
-            - t187 * t199;
-        ::overact::guard::platform(t201, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t201, 1.9999999999999996, "actuators")?;
-        let t202 = 1.0 / t201;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t126 * t135
+            - t171 * t183;
+        ::overact::guard::platform(t185, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t185, 1.9999999999999996, "actuators")?;
+        let t186 = 1.0 / t185;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t214 = minus_s_distal_leg1 * t34;
-        let t219 = t119 * twist[0] + t165 * twist[1] - t33 * twist[2];
-        let t220 = t214 * t219;
-        let t221 = rate_distal_leg1 * t220;
-        let rate_wrist_leg1 = t220 + 0.7071067811865475 * t10 * twist[0]
-            + 0.7071067811865475 * t161 * twist[1] + 0.7071067811865475 * t15 * twist[2];
-        let t233 = t119 * acceleration[0] + t165 * acceleration[1]
-            - t33 * acceleration[2] - (t221 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t34 * t233;
-        let minus_rate_proximal_leg1 = t34 * t219;
-        let t243 = 6.936717523440031 * s_proximal_leg1;
-        let t246 = 6.936717523440031 * c_proximal_leg1;
-        let t249 = parameters[6]
+        let t198 = minus_s_distal_leg1 * t30;
+        let t203 = t105 * twist[0] + t149 * twist[1] - t29 * twist[2];
+        let t204 = t198 * t203;
+        let t205 = rate_distal_leg1 * t204;
+        let rate_wrist_leg1 = t204 + 0.7071067811865475 * t10 * twist[0]
+            + t147 * twist[1] + 0.7071067811865475 * t15 * twist[2];
+        let t216 = t105 * acceleration[0] + t149 * acceleration[1]
+            - t29 * acceleration[2] - (t205 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t30 * t216;
+        let minus_rate_proximal_leg1 = t30 * t203;
+        let t226 = 6.936717523440031 * s_proximal_leg1;
+        let t232 = parameters[6]
             - (parameters[3] * minus_rate_dot_proximal_leg1
                 + parameters[4] * minus_rate_proximal_leg1
                 + ::overact::math::signed(parameters[5], minus_rate_proximal_leg1))
-            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t243
-                + parameters[2] * t246);
-        let t250 = t233 + t221;
-        let t252 = t219 * rate_distal_leg1;
-        let t253 = t214 * t233;
-        let t254 = t253 - t252;
-        let t258 = t219 * t220;
+            - (parameters[0] * minus_rate_dot_proximal_leg1 + parameters[1] * t226
+                + parameters[2] * (6.936717523440031 * c_proximal_leg1));
+        let t233 = t216 + t205;
+        let t235 = t203 * rate_distal_leg1;
+        let t236 = t198 * t216;
+        let t237 = t236 - t235;
+        let t241 = t203 * t204;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t219 * rate_wrist_leg1;
-        let t271 = t220 * t220;
-        let t272 = rate_distal_leg1 * rate_distal_leg1;
-        let t275 = parameters[7] * t250 - parameters[8] * (t252 - t254)
-            + parameters[9] * (t258 + rate_dot_distal_leg1) - parameters[10] * t221
-            + parameters[11] * (t271 - t272);
-        let t282 = c_distal_leg1 * t246 - 3.4683587617200153 * t16;
-        let t290 = t219 * t219;
-        let t298 = parameters[7] * t252 + parameters[8] * (t221 + t250)
-            + parameters[9] * (t272 - t290) + parameters[10] * t254
-            - parameters[11] * (t258 - rate_dot_distal_leg1);
-        let t303 = 6.936717523440031 * t32;
-        let t307 = c_distal_leg1
-            * (t275 + parameters[12] * t221 + parameters[14] * t243
-                - parameters[15] * t282)
+            + minus_gdistal_wx_leg1 * acceleration[2] + t203 * rate_wrist_leg1;
+        let t254 = t204 * t204;
+        let t255 = rate_distal_leg1 * rate_distal_leg1;
+        let t258 = parameters[7] * t233 - parameters[8] * (t235 - t237)
+            + parameters[9] * (t241 + rate_dot_distal_leg1) - parameters[10] * t205
+            + parameters[11] * (t254 - t255);
+        let t263 = t15 * (-6.936717523440031);
+        let t271 = t203 * t203;
+        let t279 = parameters[7] * t235 + parameters[8] * (t205 + t233)
+            + parameters[9] * (t255 - t271) + parameters[10] * t237
+            - parameters[11] * (t241 - rate_dot_distal_leg1);
+        let t284 = 6.936717523440031 * t28;
+        let t288 = c_distal_leg1
+            * (t258 + parameters[12] * t205 + parameters[14] * t226
+                - parameters[15] * t263)
             + minus_s_distal_leg1
-                * (t298 - parameters[12] * t252 - parameters[13] * t243
-                    - parameters[15] * t303);
-        let t308 = t249 - t307;
-        let t319 = parameters[8] * (t290 - t271) - parameters[7] * t258
-            + parameters[9] * t233 + parameters[10] * t258 + parameters[11] * t253;
-        let t325 = t319 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t282
-            + parameters[14] * t303;
-        let t326 = minus_gdistal_wx_leg1 * t325;
-        let t328 = 6.936717523440031 * minus_s_proximal_leg2;
+                * (t279 - parameters[12] * t235 - parameters[13] * t226
+                    - parameters[15] * t284);
+        let t289 = t232 - t288;
+        let t300 = parameters[8] * (t271 - t254) - parameters[7] * t241
+            + parameters[9] * t216 + parameters[10] * t241 + parameters[11] * t236;
+        let t306 = t300 + parameters[12] * rate_dot_distal_leg1 + parameters[13] * t263
+            + parameters[14] * t284;
+        let t307 = minus_gdistal_wx_leg1 * t306;
+        let t309 = 6.936717523440031 * minus_s_proximal_leg2;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t341 = minus_s_distal_leg2 * t62;
-        let t346 = t129 * twist[0] + t169 * twist[1] - t61 * twist[2];
-        let t347 = t341 * t346;
-        let t348 = rate_distal_leg2 * t347;
-        let rate_wrist_leg2 = t347 + 0.7071067811865475 * t125 * twist[0]
-            + 0.7071067811865475 * t41 * twist[1] + 0.7071067811865475 * t43 * twist[2];
-        let t360 = t129 * acceleration[0] + t169 * acceleration[1]
-            - t61 * acceleration[2] - (t348 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t62 * t360;
-        let t364 = 6.936717523440031 * c_proximal_leg2;
-        let minus_rate_proximal_leg2 = t62 * t346;
-        let t374 = parameters[17] * t328 - parameters[16] * minus_rate_dot_proximal_leg2
-            - parameters[18] * t364 + parameters[22]
+        let t322 = minus_s_distal_leg2 * t54;
+        let t327 = t114 * twist[0] + t153 * twist[1] - t53 * twist[2];
+        let t328 = t322 * t327;
+        let t329 = rate_distal_leg2 * t328;
+        let rate_wrist_leg2 = t328 + t112 * twist[0]
+            + 0.7071067811865475 * t37 * twist[1] + 0.7071067811865475 * t39 * twist[2];
+        let t340 = t114 * acceleration[0] + t153 * acceleration[1]
+            - t53 * acceleration[2] - (t329 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t54 * t340;
+        let minus_rate_proximal_leg2 = t54 * t327;
+        let t354 = parameters[17] * t309 - parameters[16] * minus_rate_dot_proximal_leg2
+            - parameters[18] * (6.936717523440031 * c_proximal_leg2) + parameters[22]
             - (parameters[19] * minus_rate_dot_proximal_leg2
                 + parameters[20] * minus_rate_proximal_leg2
                 + ::overact::math::signed(parameters[21], minus_rate_proximal_leg2));
-        let t375 = t360 + t348;
-        let t377 = t346 * rate_distal_leg2;
-        let t378 = t341 * t360;
-        let t379 = t378 - t377;
-        let t383 = t346 * t347;
+        let t355 = t340 + t329;
+        let t357 = t327 * rate_distal_leg2;
+        let t358 = t322 * t340;
+        let t359 = t358 - t357;
+        let t363 = t327 * t328;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t346 * rate_wrist_leg2;
-        let t396 = t347 * t347;
-        let t397 = rate_distal_leg2 * rate_distal_leg2;
-        let t400 = parameters[23] * t375 - parameters[24] * (t377 - t379)
-            + parameters[25] * (t383 + rate_dot_distal_leg2) - parameters[26] * t348
-            + parameters[27] * (t396 - t397);
-        let t407 = c_distal_leg2 * t364 - 3.4683587617200153 * t44;
-        let t415 = t346 * t346;
-        let t423 = parameters[23] * t377 + parameters[24] * (t348 + t375)
-            + parameters[25] * (t397 - t415) + parameters[26] * t379
-            - parameters[27] * (t383 - rate_dot_distal_leg2);
-        let t428 = 6.936717523440031 * t60;
-        let t432 = c_distal_leg2
-            * (t400 + parameters[28] * t348 - parameters[30] * t328
-                - parameters[31] * t407)
+            + t327 * rate_wrist_leg2;
+        let t376 = t328 * t328;
+        let t377 = rate_distal_leg2 * rate_distal_leg2;
+        let t380 = parameters[23] * t355 - parameters[24] * (t357 - t359)
+            + parameters[25] * (t363 + rate_dot_distal_leg2) - parameters[26] * t329
+            + parameters[27] * (t376 - t377);
+        let t385 = t39 * (-6.936717523440031);
+        let t393 = t327 * t327;
+        let t401 = parameters[23] * t357 + parameters[24] * (t329 + t355)
+            + parameters[25] * (t377 - t393) + parameters[26] * t359
+            - parameters[27] * (t363 - rate_dot_distal_leg2);
+        let t406 = 6.936717523440031 * t52;
+        let t410 = c_distal_leg2
+            * (t380 + parameters[28] * t329 - parameters[30] * t309
+                - parameters[31] * t385)
             + minus_s_distal_leg2
-                * (t423 - parameters[28] * t377 + parameters[29] * t328
-                    - parameters[31] * t428);
-        let t433 = t374 - t432;
-        let t444 = parameters[24] * (t415 - t396) - parameters[23] * t383
-            + parameters[25] * t360 + parameters[26] * t383 + parameters[27] * t378;
-        let t450 = t444 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t407
-            + parameters[30] * t428;
-        let t451 = gdistal_wy_leg2 * t450;
+                * (t401 - parameters[28] * t357 + parameters[29] * t309
+                    - parameters[31] * t406);
+        let t411 = t354 - t410;
+        let t422 = parameters[24] * (t393 - t376) - parameters[23] * t363
+            + parameters[25] * t340 + parameters[26] * t363 + parameters[27] * t358;
+        let t428 = t422 + parameters[28] * rate_dot_distal_leg2 + parameters[29] * t385
+            + parameters[30] * t406;
+        let t429 = gdistal_wy_leg2 * t428;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let t459 = t115 * twist[0] + t158 * twist[1] + t85 * twist[2];
-        let t460 = s_distal_leg3 * t86;
-        let t461 = t460 * t459;
-        let t462 = t459 * t461;
-        let t464 = t459 * t459;
-        let t465 = t461 * t461;
+        let t437 = t101 * twist[0] + t143 * twist[1] + t74 * twist[2];
+        let t438 = s_distal_leg3 * t75;
+        let t439 = t438 * t437;
+        let t440 = t437 * t439;
+        let t442 = t437 * t437;
+        let t443 = t439 * t439;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t479 = rate_distal_leg3 * t461;
-        let minus_rate_wrist_leg3 = t461 + 0.7071067811865475 * t67 * twist[0]
-            + 0.7071067811865475 * t154 * twist[1] + 0.7071067811865475 * t66 * twist[2];
-        let t491 = t115 * acceleration[0] + t158 * acceleration[1]
-            + t85 * acceleration[2] + t479 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let t496 = t460 * t491;
-        let t498 = parameters[39] * t462 + parameters[40] * (t464 - t465)
-            + parameters[41] * t491 - parameters[42] * t462 - parameters[43] * t496;
+        let t457 = rate_distal_leg3 * t439;
+        let t462 = t5 * twist[0] + t138 * twist[1] + t11 * twist[2];
+        let t467 = t9 * twist[0] + t36 * twist[1] + t14 * twist[2];
+        let minus_rate_wrist_leg3 = t439 + 0.7071067811865475 * (t462 + t467);
+        let t473 = t101 * acceleration[0] + t143 * acceleration[1]
+            + t74 * acceleration[2] + t457 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t478 = t438 * t473;
+        let t480 = parameters[39] * t440 + parameters[40] * (t442 - t443)
+            + parameters[41] * t473 - parameters[42] * t440 - parameters[43] * t478;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t459 * minus_rate_wrist_leg3;
-        let t508 = 6.936717523440031 * c_proximal_leg3;
-        let t511 = c_distal_leg3 * t508 + 3.4683587617200153 * t68;
-        let t514 = 6.936717523440031 * t84;
-        let t516 = t498 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t511
-            - parameters[46] * t514;
-        let t517 = gdistal_wx_leg3 * t516;
-        let minus_rate_dot_proximal_leg3 = t86 * t491;
-        let minus_rate_proximal_leg3 = t86 * t459;
-        let t527 = 6.936717523440031 * s_proximal_leg3;
-        let t532 = parameters[38]
+            - t437 * minus_rate_wrist_leg3;
+        let t490 = t58 * 6.936717523440031;
+        let t493 = 6.936717523440031 * t73;
+        let t495 = t480 + parameters[44] * rate_dot_distal_leg3 + parameters[45] * t490
+            - parameters[46] * t493;
+        let t496 = gdistal_wx_leg3 * t495;
+        let minus_rate_dot_proximal_leg3 = t75 * t473;
+        let minus_rate_proximal_leg3 = t75 * t437;
+        let t506 = 6.936717523440031 * s_proximal_leg3;
+        let t512 = parameters[38]
             - (parameters[35] * minus_rate_dot_proximal_leg3
                 + parameters[36] * minus_rate_proximal_leg3
                 + ::overact::math::signed(parameters[37], minus_rate_proximal_leg3))
-            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t527
-                + parameters[34] * t508);
-        let t533 = t459 * rate_distal_leg3;
-        let t535 = t491 - t479;
-        let t539 = rate_distal_leg3 * rate_distal_leg3;
-        let t543 = t496 + t533;
-        let t548 = parameters[39] * t533 + parameters[40] * (t535 - t479)
-            + parameters[41] * (t539 - t464) - parameters[42] * t543
-            + parameters[43] * (t462 + rate_dot_distal_leg3);
-        let t567 = parameters[39] * t535 - parameters[40] * (t533 + t543)
-            + parameters[41] * (rate_dot_distal_leg3 - t462) + parameters[42] * t479
-            + parameters[43] * (t465 - t539);
-        let t575 = s_distal_leg3
-            * (t548 - parameters[44] * t533 - parameters[45] * t527
-                + parameters[47] * t514)
+            - (parameters[32] * minus_rate_dot_proximal_leg3 + parameters[33] * t506
+                + parameters[34] * (6.936717523440031 * c_proximal_leg3));
+        let t513 = t437 * rate_distal_leg3;
+        let t515 = t473 - t457;
+        let t519 = rate_distal_leg3 * rate_distal_leg3;
+        let t523 = t478 + t513;
+        let t528 = parameters[39] * t513 + parameters[40] * (t515 - t457)
+            + parameters[41] * (t519 - t442) - parameters[42] * t523
+            + parameters[43] * (t440 + rate_dot_distal_leg3);
+        let t547 = parameters[39] * t515 - parameters[40] * (t513 + t523)
+            + parameters[41] * (rate_dot_distal_leg3 - t440) + parameters[42] * t457
+            + parameters[43] * (t443 - t519);
+        let t555 = s_distal_leg3
+            * (t528 - parameters[44] * t513 - parameters[45] * t506
+                + parameters[47] * t493)
             - c_distal_leg3
-                * (t567 - parameters[44] * t479 + parameters[46] * t527
-                    - parameters[47] * t511);
-        let t576 = t532 + t575;
-        let t580 = 6.936717523440031 * minus_s_proximal_leg4;
+                * (t547 - parameters[44] * t457 + parameters[46] * t506
+                    - parameters[47] * t490);
+        let t556 = t512 + t555;
+        let t560 = 6.936717523440031 * minus_s_proximal_leg4;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t593 = s_distal_leg4 * t110;
-        let t598 = t138 * twist[0] + t175 * twist[1] + t109 * twist[2];
-        let t599 = t593 * t598;
-        let t600 = rate_distal_leg4 * t599;
-        let minus_rate_wrist_leg4 = t599 + 0.7071067811865475 * t134 * twist[0]
-            + 0.7071067811865475 * t91 * twist[1] + 0.7071067811865475 * t90 * twist[2];
-        let t612 = t138 * acceleration[0] + t175 * acceleration[1]
-            + t109 * acceleration[2] + t600 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t110 * t612;
-        let t616 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg4 = t110 * t598;
-        let t626 = parameters[49] * t580 - parameters[48] * minus_rate_dot_proximal_leg4
-            - parameters[50] * t616 + parameters[54]
+        let t573 = s_distal_leg4 * t96;
+        let t578 = t123 * twist[0] + t159 * twist[1] + t95 * twist[2];
+        let t579 = t573 * t578;
+        let t580 = rate_distal_leg4 * t579;
+        let t585 = t110 * twist[0] + t33 * twist[1] + t38 * twist[2];
+        let minus_rate_wrist_leg4 = t579 + 0.7071067811865475 * (t585 + t467);
+        let t591 = t123 * acceleration[0] + t159 * acceleration[1]
+            + t95 * acceleration[2] + t580 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t96 * t591;
+        let minus_rate_proximal_leg4 = t96 * t578;
+        let t605 = parameters[49] * t560 - parameters[48] * minus_rate_dot_proximal_leg4
+            - parameters[50] * (6.936717523440031 * c_proximal_leg4) + parameters[54]
             - (parameters[51] * minus_rate_dot_proximal_leg4
                 + parameters[52] * minus_rate_proximal_leg4
                 + ::overact::math::signed(parameters[53], minus_rate_proximal_leg4));
-        let t627 = t598 * rate_distal_leg4;
-        let t629 = t612 - t600;
-        let t633 = rate_distal_leg4 * rate_distal_leg4;
-        let t634 = t598 * t598;
-        let t638 = t593 * t612;
-        let t639 = t638 + t627;
-        let t642 = t598 * t599;
+        let t606 = t578 * rate_distal_leg4;
+        let t608 = t591 - t580;
+        let t612 = rate_distal_leg4 * rate_distal_leg4;
+        let t613 = t578 * t578;
+        let t617 = t573 * t591;
+        let t618 = t617 + t606;
+        let t621 = t578 * t579;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t598 * minus_rate_wrist_leg4;
-        let t652 = parameters[55] * t627 + parameters[56] * (t629 - t600)
-            + parameters[57] * (t633 - t634) - parameters[58] * t639
-            + parameters[59] * (t642 + rate_dot_distal_leg4);
-        let t657 = 6.936717523440031 * t108;
-        let t670 = t599 * t599;
-        let t673 = parameters[55] * t629 - parameters[56] * (t627 + t639)
-            + parameters[57] * (rate_dot_distal_leg4 - t642) + parameters[58] * t600
-            + parameters[59] * (t670 - t633);
-        let t680 = c_distal_leg4 * t616 + 3.4683587617200153 * t92;
-        let t684 = s_distal_leg4
-            * (t652 - parameters[60] * t627 + parameters[61] * t580
-                + parameters[63] * t657)
+            - minus_gdistal_wy_leg4 * acceleration[2] - t578 * minus_rate_wrist_leg4;
+        let t631 = parameters[55] * t606 + parameters[56] * (t608 - t580)
+            + parameters[57] * (t612 - t613) - parameters[58] * t618
+            + parameters[59] * (t621 + rate_dot_distal_leg4);
+        let t636 = 6.936717523440031 * t94;
+        let t649 = t579 * t579;
+        let t652 = parameters[55] * t608 - parameters[56] * (t606 + t618)
+            + parameters[57] * (rate_dot_distal_leg4 - t621) + parameters[58] * t580
+            + parameters[59] * (t649 - t612);
+        let t657 = t79 * 6.936717523440031;
+        let t661 = s_distal_leg4
+            * (t631 - parameters[60] * t606 + parameters[61] * t560
+                + parameters[63] * t636)
             - c_distal_leg4
-                * (t673 - parameters[60] * t600 - parameters[62] * t580
-                    - parameters[63] * t680);
-        let t685 = t626 + t684;
-        let t696 = parameters[55] * t642 + parameters[56] * (t634 - t670)
-            + parameters[57] * t612 - parameters[58] * t642 - parameters[59] * t638;
-        let t702 = t696 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t680
-            - parameters[62] * t657;
-        let t703 = minus_gdistal_wy_leg4 * t702;
-        let t705 = gproximal_wz_leg1 * t308 + t326 + gproximal_wz_leg2 * t433 - t451
-            + t517 - minus_gproximal_wz_leg3 * t576
-            - (minus_gproximal_wz_leg4 * t685 + t703);
-        let t710 = t5 * acceleration[0] + t153 * acceleration[1] + t11 * acceleration[2];
-        let t716 = t5 * twist[0] + t153 * twist[1] + t11 * twist[2];
-        let t721 = t9 * twist[0] + t40 * twist[1] + t14 * twist[2];
-        let t722 = t716 * t721;
-        let t727 = t124 * acceleration[0] + t37 * acceleration[1]
-            + t42 * acceleration[2];
-        let t735 = t124 * twist[0] + t37 * twist[1] + t42 * twist[2];
-        let t736 = t716 * t735;
-        let t741 = t9 * acceleration[0] + t40 * acceleration[1] + t14 * acceleration[2];
-        let t745 = t735 * t721;
-        let t748 = t735 * t735;
-        let t749 = t721 * t721;
-        let t752 = parameters[64] * t710 - parameters[65] * (t722 - t727)
-            + parameters[66] * (t736 + t741) - parameters[67] * t745
-            + parameters[68] * (t748 - t749);
-        let t755 = 9.81 * t14;
-        let t758 = 9.81 * t42;
-        let t760 = t752 + parameters[69] * t745 + parameters[71] * t755
-            - parameters[72] * t758;
-        let t766 = t716 * t716;
-        let t774 = parameters[64] * t722 + parameters[65] * (t745 + t710)
-            + parameters[66] * (t749 - t766) + parameters[67] * t727
-            - parameters[68] * (t736 - t741);
-        let t779 = 9.81 * t11;
-        let t781 = t774 - parameters[69] * t722 - parameters[70] * t755
-            + parameters[72] * t779;
-        let t795 = parameters[65] * (t766 - t748) - parameters[64] * t736
-            - parameters[66] * (t745 - t710) + parameters[67] * t736
-            + parameters[68] * (t722 + t727);
-        let t801 = t795 + parameters[69] * t741 + parameters[70] * t758
-            - parameters[71] * t779;
-        let t817 = t517 - minus_gproximal_wx_leg3 * t576
-            - (minus_gproximal_wx_leg1 * t308 + t326 + minus_gproximal_wx_leg2 * t433
-                + c_proximal_leg2 * t450) + c_proximal_leg4 * t702
-            - minus_gproximal_wx_leg4 * t685;
-        let t823 = t817 + t5 * t760 + t124 * t781 + t9 * t801;
-        let t835 = c_proximal_leg1 * t325 - minus_gproximal_wy_leg1 * t308 + t451
-            - minus_gproximal_wy_leg2 * t433
-            - (minus_gproximal_wy_leg3 * t576 + c_proximal_leg3 * t516);
-        let t846 = t835 - (minus_gproximal_wy_leg4 * t685 + t703) + t153 * t760
-            + t37 * t781 + t40 * t801 - t823 * t195;
-        let t848 = t705 + t11 * t760 + t42 * t781 + t14 * t801 - t823 * t150
-            - t199 * t846;
-        let t849 = t202 * t848;
-        let t854 = t198 * t846 - t199 * t849;
-        let t858 = t823 * t149 - t195 * t854 - t150 * t849;
-        let t865 = minus_gproximal_wx_leg4 * t195 - minus_gproximal_wy_leg4;
-        let t871 = t202
-            * (minus_gproximal_wx_leg4 * t150 - minus_gproximal_wz_leg4 - t199 * t865);
-        let t873 = t198 * t865 - t199 * t871;
-        let t877 = minus_gproximal_wx_leg4 * t149 + t195 * t873 + t150 * t871;
-        let t889 = ::overact::math::sqrt(
+                * (t652 - parameters[60] * t580 - parameters[62] * t560
+                    - parameters[63] * t657);
+        let t662 = t605 + t661;
+        let t673 = parameters[55] * t621 + parameters[56] * (t613 - t649)
+            + parameters[57] * t591 - parameters[58] * t621 - parameters[59] * t617;
+        let t679 = t673 + parameters[60] * rate_dot_distal_leg4 + parameters[61] * t657
+            - parameters[62] * t636;
+        let t680 = minus_gdistal_wy_leg4 * t679;
+        let t682 = gproximal_wz_leg1 * t289 + t307 + gproximal_wz_leg2 * t411 - t429
+            + t496 - minus_gproximal_wz_leg3 * t556
+            - (minus_gproximal_wz_leg4 * t662 + t680);
+        let t687 = t5 * acceleration[0] + t138 * acceleration[1] + t11 * acceleration[2];
+        let t689 = t462 * t467;
+        let t690 = t38 * t689;
+        let t692 = t462 * t585;
+        let t693 = t14 * t692;
+        let t700 = t110 * acceleration[0] + t33 * acceleration[1]
+            + t38 * acceleration[2];
+        let t701 = t700 - t689;
+        let t703 = t585 * t467;
+        let t704 = t687 + t703;
+        let t707 = t462 * t462;
+        let t708 = t585 * t585;
+        let t709 = t707 - t708;
+        let t713 = parameters[64] * (t11 * t687 + t690 - t693)
+            + parameters[65] * (t11 * t701 + t38 * t704 + t14 * t709);
+        let t718 = t9 * acceleration[0] + t36 * acceleration[1] + t14 * acceleration[2];
+        let t719 = t718 + t692;
+        let t721 = t467 * t467;
+        let t722 = t721 - t707;
+        let t725 = t687 - t703;
+        let t731 = t11 * t703;
+        let t735 = t713 + parameters[66] * (t11 * t719 + t38 * t722 + t14 * t725)
+            + parameters[67] * (t38 * t700 - t731 + t693);
+        let t736 = t708 - t721;
+        let t738 = t718 - t692;
+        let t741 = t700 + t689;
+        let t750 = t735 + parameters[68] * (t11 * t736 + t38 * t738 + t14 * t741)
+            + parameters[69] * (t731 - t690 + t14 * t718);
+        let t764 = t496 - minus_gproximal_wx_leg3 * t556
+            - (minus_gproximal_wx_leg1 * t289 + t307 + minus_gproximal_wx_leg2 * t411
+                + c_proximal_leg2 * t428) + c_proximal_leg4 * t679
+            - minus_gproximal_wx_leg4 * t662;
+        let t766 = t110 * t689;
+        let t768 = t9 * t692;
+        let t777 = parameters[64] * (t5 * t687 + t766 - t768)
+            + parameters[65] * (t5 * t701 + t110 * t704 + t9 * t709);
+        let t786 = t5 * t703;
+        let t790 = t777 + parameters[66] * (t5 * t719 + t110 * t722 + t9 * t725)
+            + parameters[67] * (t110 * t700 - t786 + t768);
+        let t802 = t790 + parameters[68] * (t5 * t736 + t110 * t738 + t9 * t741)
+            + parameters[69] * (t786 - t766 + t9 * t718);
+        let t812 = t764 + t802 + parameters[70] * (9.81 * t138)
+            + parameters[71] * (9.81 * t33) + parameters[72] * (9.81 * t36);
+        let t824 = c_proximal_leg1 * t306 - minus_gproximal_wy_leg1 * t289 + t429
+            - minus_gproximal_wy_leg2 * t411
+            - (minus_gproximal_wy_leg3 * t556 + c_proximal_leg3 * t495);
+        let t829 = t33 * t689;
+        let t831 = t36 * t692;
+        let t840 = parameters[64] * (t138 * t687 + t829 - t831)
+            + parameters[65] * (t138 * t701 + t33 * t704 + t36 * t709);
+        let t849 = t138 * t703;
+        let t853 = t840 + parameters[66] * (t138 * t719 + t33 * t722 + t36 * t725)
+            + parameters[67] * (t33 * t700 - t849 + t831);
+        let t865 = t853 + parameters[68] * (t138 * t736 + t33 * t738 + t36 * t741)
+            + parameters[69] * (t849 - t829 + t36 * t718);
+        let t875 = t824 - (minus_gproximal_wy_leg4 * t662 + t680) + t865
+            - parameters[70] * (9.81 * t5) - parameters[71] * (9.81 * t110)
+            - parameters[72] * (9.81 * t9);
+        let t877 = t875 - t812 * t179;
+        let t880 = t186 * (t682 + t750 - t812 * t135 - t183 * t877);
+        let t885 = t182 * t877 - t183 * t880;
+        let t889 = t812 * t134 - t179 * t885 - t135 * t880;
+        let t896 = minus_gproximal_wx_leg4 * t179 - minus_gproximal_wy_leg4;
+        let t902 = t186
+            * (minus_gproximal_wx_leg4 * t135 - minus_gproximal_wz_leg4 - t183 * t896);
+        let t904 = t182 * t896 - t183 * t902;
+        let t908 = minus_gproximal_wx_leg4 * t134 + t179 * t904 + t135 * t902;
+        let t920 = ::overact::math::sqrt(
             1.0
-                - (minus_gproximal_wx_leg4 * t877 - minus_gproximal_wy_leg4 * t873
-                    - minus_gproximal_wz_leg4 * t871),
+                - (minus_gproximal_wx_leg4 * t908 - minus_gproximal_wy_leg4 * t904
+                    - minus_gproximal_wz_leg4 * t902),
         );
-        let t890 = 1.0 / t889;
-        let t893 = gproximal_wz_leg1 * t849
-            - (minus_gproximal_wx_leg1 * t858 + minus_gproximal_wy_leg1 * t854)
+        let t921 = 1.0 / t920;
+        let t924 = gproximal_wz_leg1 * t880
+            - (minus_gproximal_wx_leg1 * t889 + minus_gproximal_wy_leg1 * t885)
             - preload[0]
-                * ((minus_gproximal_wx_leg1 * t877 - minus_gproximal_wy_leg1 * t873
-                    + gproximal_wz_leg1 * t871) * t890);
-        let t906 = gproximal_wz_leg2 * t849
-            - (minus_gproximal_wx_leg2 * t858 + minus_gproximal_wy_leg2 * t854)
+                * ((minus_gproximal_wx_leg1 * t908 - minus_gproximal_wy_leg1 * t904
+                    + gproximal_wz_leg1 * t902) * t921);
+        let t937 = gproximal_wz_leg2 * t880
+            - (minus_gproximal_wx_leg2 * t889 + minus_gproximal_wy_leg2 * t885)
             - preload[0]
-                * ((minus_gproximal_wx_leg2 * t877 - minus_gproximal_wy_leg2 * t873
-                    + gproximal_wz_leg2 * t871) * t890);
-        let t919 = minus_gproximal_wx_leg3 * t858 + minus_gproximal_wy_leg3 * t854
-            + minus_gproximal_wz_leg3 * t849
+                * ((minus_gproximal_wx_leg2 * t908 - minus_gproximal_wy_leg2 * t904
+                    + gproximal_wz_leg2 * t902) * t921);
+        let t950 = minus_gproximal_wx_leg3 * t889 + minus_gproximal_wy_leg3 * t885
+            + minus_gproximal_wz_leg3 * t880
             + preload[0]
-                * ((minus_gproximal_wx_leg3 * t877 - minus_gproximal_wy_leg3 * t873
-                    - minus_gproximal_wz_leg3 * t871) * t890);
+                * ((minus_gproximal_wx_leg3 * t908 - minus_gproximal_wy_leg3 * t904
+                    - minus_gproximal_wz_leg3 * t902) * t921);
         Ok([
-            t893, t906, -t919,
-            preload[0] * t889
-                - (minus_gproximal_wx_leg4 * t858 + minus_gproximal_wy_leg4 * t854
-                    + minus_gproximal_wz_leg4 * t849),
+            t924, t937, -t950,
+            preload[0] * t920
+                - (minus_gproximal_wx_leg4 * t889 + minus_gproximal_wy_leg4 * t885
+                    + minus_gproximal_wz_leg4 * t880),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -10896,7 +10671,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4.
     ///
-    /// 254 operations (92 additions, 151 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 254 intermediates.
+    /// 242 operations (88 additions, 143 multiplications, 11 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 242 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -10918,137 +10693,133 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t31 - c_distal_leg1) * t34;
-        let t37 = t13 - t4;
-        let t38 = pose[3] * t0;
-        let t39 = pose[0] * t6;
-        let t40 = t38 - t39;
-        let t41 = t37 - t40;
-        let t42 = t38 + t39;
-        let t43 = t42 - t14;
-        let t44 = t41 + t43;
-        let minus_s_distal_leg2 = 0.5 * t44;
-        let t48 = 1.0 - 0.25 * (t44 * t44);
-        ::overact::guard::reach(t48, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t48);
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t31 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t28 - c_distal_leg1) * t31;
+        let t34 = t13 - t4;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let t37 = t35 - t36;
+        let t38 = t34 - t37;
+        let t39 = t35 + t36;
+        let t40 = t39 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t38 + t40);
+        let t44 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t44, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t54 = 1.0 / (0.5 * (t41 * c_distal_leg2 - t43 * c_distal_leg2));
-        let t55 = pose[2] * t6;
-        let t56 = pose[0] * t3;
-        let t57 = t55 - t56;
-        let t59 = t41 - t43;
-        let minus_s_proximal_leg2 = t54 * (0.35355339059327373 * ((t57 - t9) * t59));
-        let t64 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t64;
-        let t68 = t11 + t14;
-        let t69 = t5 + t9;
-        let t70 = t68 - t69;
-        let s_distal_leg3 = 0.5 * t70;
-        let t74 = 1.0 - 0.25 * (t70 * t70);
-        ::overact::guard::reach(t74, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t74);
+        let t46 = t38 - t40;
+        let t49 = 1.0 / (0.5 * (c_distal_leg2 * t46));
+        let t50 = pose[2] * t6;
+        let t51 = pose[0] * t3;
+        let t52 = t50 - t51;
+        let minus_s_proximal_leg2 = t49 * (0.35355339059327373 * ((t52 - t9) * t46));
+        let t58 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t58;
+        let t62 = t11 + t14;
+        let t63 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t62 - t63);
+        let t67 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t67, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t80 = 1.0 / (0.5 * (t69 * c_distal_leg3 + t68 * c_distal_leg3));
-        let t81 = t69 + t68;
-        let c_proximal_leg3 = t80 * (0.25 * (t81 * t81));
-        let t85 = s_distal_leg3 * c_proximal_leg3;
-        let t88 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t85 + c_distal_leg3) * t88;
-        let t92 = t42 + t14;
-        let t93 = t37 + t40;
-        let t94 = t92 - t93;
-        let s_distal_leg4 = 0.5 * t94;
-        let t98 = 1.0 - 0.25 * (t94 * t94);
-        ::overact::guard::reach(t98, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t98);
+        let t69 = t63 + t62;
+        let t72 = 1.0 / (0.5 * (c_distal_leg3 * t69));
+        let c_proximal_leg3 = t72 * (0.25 * (t69 * t69));
+        let t76 = s_distal_leg3 * c_proximal_leg3;
+        let t79 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t76 + c_distal_leg3) * t79;
+        let t83 = t39 + t14;
+        let t84 = t34 + t37;
+        let s_distal_leg4 = 0.5 * (t83 - t84);
+        let t88 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t88, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t104 = 1.0 / (0.5 * (t93 * c_distal_leg4 + t92 * c_distal_leg4));
-        let t106 = t93 + t92;
-        let minus_s_proximal_leg4 = t104 * (0.35355339059327373 * ((t57 + t9) * t106));
-        let t111 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t111;
-        let t114 = minus_gproximal_wx_leg1 * torques[0]
+        let t90 = t84 + t83;
+        let t93 = 1.0 / (0.5 * (c_distal_leg4 * t90));
+        let minus_s_proximal_leg4 = t93 * (0.35355339059327373 * ((t52 + t9) * t90));
+        let t99 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t99;
+        let t102 = minus_gproximal_wx_leg1 * torques[0]
             + minus_gproximal_wx_leg2 * torques[1] + minus_gproximal_wx_leg3 * torques[2]
             + minus_gproximal_wx_leg4 * torques[3];
-        let t121 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t109 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
-        let t122 = 1.0 / t121;
-        let t124 = t55 + t56;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * ((t124 - t40) * t27));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t34;
-        let c_proximal_leg2 = t54 * (0.25 * (t59 * t59));
-        let t135 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t135 - c_distal_leg2) * t64;
-        let s_proximal_leg3 = t80 * (0.35355339059327373 * ((t124 + t40) * t81));
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t88;
-        let c_proximal_leg4 = t104 * (0.25 * (t106 * t106));
-        let t152 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t152 + c_distal_leg4) * t111;
-        let t157 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t109, 0.9999999999999998, "actuators")?;
+        let t110 = 1.0 / t109;
+        let t112 = t50 + t51;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t112 - t37) * t21));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t31;
+        let c_proximal_leg2 = t49 * (0.25 * (t46 * t46));
+        let t123 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t123 - c_distal_leg2) * t58;
+        let s_proximal_leg3 = t72 * (0.35355339059327373 * ((t112 + t37) * t69));
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t79;
+        let c_proximal_leg4 = t93 * (0.25 * (t90 * t90));
+        let t140 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t140 + c_distal_leg4) * t99;
+        let t145 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t158 = t157 * t122;
-        let t167 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        let t146 = t145 * t110;
+        let t155 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t157 * t158;
-        ::overact::guard::platform(t167, 0.9999999999999998, "actuators")?;
-        let t168 = 1.0 / t167;
-        let t177 = t114 * t158
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t145 * t146;
+        ::overact::guard::platform(t155, 0.9999999999999998, "actuators")?;
+        let t156 = 1.0 / t155;
+        let t165 = t102 * t146
             - (minus_gproximal_wy_leg1 * torques[0]
                 + minus_gproximal_wy_leg2 * torques[1]
                 + minus_gproximal_wy_leg3 * torques[2]
                 + minus_gproximal_wy_leg4 * torques[3]);
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t85 - c_distal_leg3) * t88;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t31 + c_distal_leg1) * t34;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t135 + c_distal_leg2) * t64;
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t152 - c_distal_leg4) * t111;
-        let t204 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t76 - c_distal_leg3) * t79;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t28 + c_distal_leg1) * t31;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t123 + c_distal_leg2) * t58;
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t140 - c_distal_leg4) * t99;
+        let t192 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t205 = t204 * t122;
-        let t207 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t193 = t192 * t110;
+        let t195 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t157 * t205;
-        let t208 = t207 * t168;
-        let t219 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t145 * t193;
+        let t196 = t195 * t156;
+        let t207 = gproximal_wz_leg1 * torques[0] + gproximal_wz_leg2 * torques[1]
+            - minus_gproximal_wz_leg3 * torques[2] - minus_gproximal_wz_leg4 * torques[3]
+            + t102 * t193 - t196 * t165;
+        let t218 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t204 * t205
-            - t207 * t208;
-        ::overact::guard::platform(t219, 1.9999999999999996, "actuators")?;
-        let t230 = gproximal_wz_leg1 * torques[0] + gproximal_wz_leg2 * torques[1]
-            - minus_gproximal_wz_leg3 * torques[2] - minus_gproximal_wz_leg4 * torques[3]
-            + t114 * t205 - t208 * t177;
-        let t231 = t230 / t219;
-        let t233 = t168 * t177 - t208 * t231;
-        let t237 = t114 * t122 + t158 * t233 + t205 * t231;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t192 * t193
+            - t195 * t196;
+        ::overact::guard::platform(t218, 1.9999999999999996, "actuators")?;
+        let t219 = t207 / t218;
+        let t221 = t156 * t165 - t196 * t219;
+        let t225 = t102 * t110 + t146 * t221 + t193 * t219;
         Ok([
-            minus_gproximal_wx_leg1 * t237 - minus_gproximal_wy_leg1 * t233
-                + gproximal_wz_leg1 * t231,
-            minus_gproximal_wx_leg2 * t237 - minus_gproximal_wy_leg2 * t233
-                + gproximal_wz_leg2 * t231,
-            minus_gproximal_wx_leg3 * t237 - minus_gproximal_wy_leg3 * t233
-                - minus_gproximal_wz_leg3 * t231,
-            minus_gproximal_wx_leg4 * t237 - minus_gproximal_wy_leg4 * t233
-                - minus_gproximal_wz_leg4 * t231,
+            minus_gproximal_wx_leg1 * t225 - minus_gproximal_wy_leg1 * t221
+                + gproximal_wz_leg1 * t219,
+            minus_gproximal_wx_leg2 * t225 - minus_gproximal_wy_leg2 * t221
+                + gproximal_wz_leg2 * t219,
+            minus_gproximal_wx_leg3 * t225 - minus_gproximal_wy_leg3 * t221
+                - minus_gproximal_wz_leg3 * t219,
+            minus_gproximal_wx_leg4 * t225 - minus_gproximal_wy_leg4 * t221
+                - minus_gproximal_wz_leg4 * t219,
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -11058,7 +10829,7 @@ impl Spherical4Rrr {
     ///
     /// Output: 4 x 1.
     ///
-    /// 238 operations (84 additions, 142 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 239 intermediates.
+    /// 226 operations (80 additions, 134 multiplications, 12 divisions), 5 square roots, 0 trigonometric pairs, 0 signs, 227 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -11077,139 +10848,135 @@ impl Spherical4Rrr {
         let t13 = 1.0 - pose[1] * t6;
         let t14 = t13 - t1;
         let t15 = t11 - t14;
-        let t16 = t10 + t15;
-        let minus_s_distal_leg1 = 0.5 * t16;
-        let t20 = 1.0 - 0.25 * (t16 * t16);
-        ::overact::guard::reach(t20, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t20);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
+        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t19, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t26 = 1.0 / (0.5 * (t10 * c_distal_leg1 - t15 * c_distal_leg1));
-        let t27 = t10 - t15;
-        let c_proximal_leg1 = t26 * (0.25 * (t27 * t27));
-        let t31 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t34 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t31 - c_distal_leg1) * t34;
-        let t36 = pose[3] * t0;
-        let t37 = pose[0] * t6;
-        let t38 = t36 + t37;
-        let t39 = t38 + t14;
-        let t40 = t13 - t4;
-        let t41 = t36 - t37;
-        let t42 = t40 + t41;
-        let t43 = t39 - t42;
-        let s_distal_leg4 = 0.5 * t43;
-        let t47 = 1.0 - 0.25 * (t43 * t43);
-        ::overact::guard::reach(t47, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t47);
+        let t21 = t10 - t15;
+        let t24 = 1.0 / (0.5 * (c_distal_leg1 * t21));
+        let c_proximal_leg1 = t24 * (0.25 * (t21 * t21));
+        let t28 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t31 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = 0.7071067811865475 * (t28 - c_distal_leg1) * t31;
+        let t33 = pose[3] * t0;
+        let t34 = pose[0] * t6;
+        let t35 = t33 + t34;
+        let t36 = t35 + t14;
+        let t37 = t13 - t4;
+        let t38 = t33 - t34;
+        let t39 = t37 + t38;
+        let s_distal_leg4 = 0.5 * (t36 - t39);
+        let t43 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t43, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t43);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t53 = 1.0 / (0.5 * (t42 * c_distal_leg4 + t39 * c_distal_leg4));
-        let t54 = pose[2] * t6;
-        let t55 = pose[0] * t3;
-        let t56 = t54 - t55;
-        let t58 = t42 + t39;
-        let minus_s_proximal_leg4 = t53 * (0.35355339059327373 * ((t56 + t9) * t58));
-        let t63 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t63;
-        let t66 = t40 - t41;
-        let t67 = t38 - t14;
-        let t68 = t66 + t67;
-        let minus_s_distal_leg2 = 0.5 * t68;
-        let t72 = 1.0 - 0.25 * (t68 * t68);
-        ::overact::guard::reach(t72, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t72);
+        let t45 = t39 + t36;
+        let t48 = 1.0 / (0.5 * (c_distal_leg4 * t45));
+        let t49 = pose[2] * t6;
+        let t50 = pose[0] * t3;
+        let t51 = t49 - t50;
+        let minus_s_proximal_leg4 = t48 * (0.35355339059327373 * ((t51 + t9) * t45));
+        let t57 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = s_distal_leg4 * minus_s_proximal_leg4 * t57;
+        let t60 = t37 - t38;
+        let t61 = t35 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t60 + t61);
+        let t65 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t65, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t65);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t78 = 1.0 / (0.5 * (t66 * c_distal_leg2 - t67 * c_distal_leg2));
-        let t80 = t66 - t67;
-        let minus_s_proximal_leg2 = t78 * (0.35355339059327373 * ((t56 - t9) * t80));
-        let t85 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t85;
-        let t89 = t11 + t14;
-        let t90 = t5 + t9;
-        let t91 = t89 - t90;
-        let s_distal_leg3 = 0.5 * t91;
-        let t95 = 1.0 - 0.25 * (t91 * t91);
-        ::overact::guard::reach(t95, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t95);
+        let t67 = t60 - t61;
+        let t70 = 1.0 / (0.5 * (c_distal_leg2 * t67));
+        let minus_s_proximal_leg2 = t70 * (0.35355339059327373 * ((t51 - t9) * t67));
+        let t76 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_distal_leg2 * minus_s_proximal_leg2 * t76;
+        let t80 = t11 + t14;
+        let t81 = t5 + t9;
+        let s_distal_leg3 = 0.5 * (t80 - t81);
+        let t85 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t85, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t85);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t101 = 1.0 / (0.5 * (t90 * c_distal_leg3 + t89 * c_distal_leg3));
-        let t102 = t90 + t89;
-        let c_proximal_leg3 = t101 * (0.25 * (t102 * t102));
-        let t106 = s_distal_leg3 * c_proximal_leg3;
-        let t109 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t106 + c_distal_leg3) * t109;
-        let t114 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t87 = t81 + t80;
+        let t90 = 1.0 / (0.5 * (c_distal_leg3 * t87));
+        let c_proximal_leg3 = t90 * (0.25 * (t87 * t87));
+        let t94 = s_distal_leg3 * c_proximal_leg3;
+        let t97 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = 0.7071067811865475 * (t94 + c_distal_leg3) * t97;
+        let t102 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t114, 0.9999999999999998, "actuators")?;
-        let t115 = 1.0 / t114;
-        let t117 = t54 + t55;
-        let s_proximal_leg1 = t26 * (0.35355339059327373 * ((t117 - t41) * t27));
-        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t34;
-        let c_proximal_leg2 = t78 * (0.25 * (t80 * t80));
-        let t128 = minus_s_distal_leg2 * c_proximal_leg2;
-        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t128 - c_distal_leg2) * t85;
-        let s_proximal_leg3 = t101 * (0.35355339059327373 * ((t117 + t41) * t102));
-        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t109;
-        let c_proximal_leg4 = t53 * (0.25 * (t58 * t58));
-        let t145 = s_distal_leg4 * c_proximal_leg4;
-        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t145 + c_distal_leg4) * t63;
-        let t150 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t102, 0.9999999999999998, "actuators")?;
+        let t103 = 1.0 / t102;
+        let t105 = t49 + t50;
+        let s_proximal_leg1 = t24 * (0.35355339059327373 * ((t105 - t38) * t21));
+        let minus_gproximal_wy_leg1 = minus_s_distal_leg1 * s_proximal_leg1 * t31;
+        let c_proximal_leg2 = t70 * (0.25 * (t67 * t67));
+        let t116 = minus_s_distal_leg2 * c_proximal_leg2;
+        let minus_gproximal_wy_leg2 = 0.7071067811865475 * (t116 - c_distal_leg2) * t76;
+        let s_proximal_leg3 = t90 * (0.35355339059327373 * ((t105 + t38) * t87));
+        let minus_gproximal_wy_leg3 = s_distal_leg3 * s_proximal_leg3 * t97;
+        let c_proximal_leg4 = t48 * (0.25 * (t45 * t45));
+        let t133 = s_distal_leg4 * c_proximal_leg4;
+        let minus_gproximal_wy_leg4 = 0.7071067811865475 * (t133 + c_distal_leg4) * t57;
+        let t138 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t151 = t150 * t115;
-        let t160 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        let t139 = t138 * t103;
+        let t148 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t150 * t151;
-        ::overact::guard::platform(t160, 0.9999999999999998, "actuators")?;
-        let t161 = 1.0 / t160;
-        let t163 = minus_gproximal_wx_leg4 * t151 - minus_gproximal_wy_leg4;
-        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t106 - c_distal_leg3) * t109;
-        let gproximal_wz_leg1 = 0.7071067811865475 * (t31 + c_distal_leg1) * t34;
-        let gproximal_wz_leg2 = 0.7071067811865475 * (t128 + c_distal_leg2) * t85;
-        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t145 - c_distal_leg4) * t63;
-        let t190 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t138 * t139;
+        ::overact::guard::platform(t148, 0.9999999999999998, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t151 = minus_gproximal_wx_leg4 * t139 - minus_gproximal_wy_leg4;
+        let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t94 - c_distal_leg3) * t97;
+        let gproximal_wz_leg1 = 0.7071067811865475 * (t28 + c_distal_leg1) * t31;
+        let gproximal_wz_leg2 = 0.7071067811865475 * (t116 + c_distal_leg2) * t76;
+        let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t133 - c_distal_leg4) * t57;
+        let t178 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t191 = t190 * t115;
-        let t193 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t179 = t178 * t103;
+        let t181 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t150 * t191;
-        let t194 = t193 * t161;
-        let t205 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t138 * t179;
+        let t182 = t181 * t149;
+        let t197 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t190 * t191
-            - t193 * t194;
-        ::overact::guard::platform(t205, 1.9999999999999996, "actuators")?;
-        let t210 = (minus_gproximal_wx_leg4 * t191 - minus_gproximal_wz_leg4
-            - t194 * t163) / t205;
-        let t212 = t161 * t163 - t194 * t210;
-        let t216 = minus_gproximal_wx_leg4 * t115 + t151 * t212 + t191 * t210;
-        let t228 = ::overact::math::sqrt(
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t178 * t179
+            - t181 * t182;
+        ::overact::guard::platform(t197, 1.9999999999999996, "actuators")?;
+        let t198 = (minus_gproximal_wx_leg4 * t179 - minus_gproximal_wz_leg4
+            - t182 * t151) / t197;
+        let t200 = t149 * t151 - t182 * t198;
+        let t204 = minus_gproximal_wx_leg4 * t103 + t139 * t200 + t179 * t198;
+        let t216 = ::overact::math::sqrt(
             1.0
-                - (minus_gproximal_wx_leg4 * t216 - minus_gproximal_wy_leg4 * t212
-                    - minus_gproximal_wz_leg4 * t210),
+                - (minus_gproximal_wx_leg4 * t204 - minus_gproximal_wy_leg4 * t200
+                    - minus_gproximal_wz_leg4 * t198),
         );
-        let t229 = 1.0 / t228;
+        let t217 = 1.0 / t216;
         Ok([
             [
-                -((minus_gproximal_wx_leg1 * t216 - minus_gproximal_wy_leg1 * t212
-                    + gproximal_wz_leg1 * t210) * t229),
+                -((minus_gproximal_wx_leg1 * t204 - minus_gproximal_wy_leg1 * t200
+                    + gproximal_wz_leg1 * t198) * t217),
             ],
             [
-                -((minus_gproximal_wx_leg2 * t216 - minus_gproximal_wy_leg2 * t212
-                    + gproximal_wz_leg2 * t210) * t229),
+                -((minus_gproximal_wx_leg2 * t204 - minus_gproximal_wy_leg2 * t200
+                    + gproximal_wz_leg2 * t198) * t217),
             ],
             [
-                -((minus_gproximal_wx_leg3 * t216 - minus_gproximal_wy_leg3 * t212
-                    - minus_gproximal_wz_leg3 * t210) * t229),
+                -((minus_gproximal_wx_leg3 * t204 - minus_gproximal_wy_leg3 * t200
+                    - minus_gproximal_wz_leg3 * t198) * t217),
             ],
-            [t228],
+            [t216],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.

@@ -341,7 +341,7 @@ impl Stanford {
     /// Output: 6 x 75.
     /// Columns: `PARAMETERS`.
     ///
-    /// 596 operations (256 additions, 340 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 479 intermediates.
+    /// 580 operations (251 additions, 329 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 463 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 6],
@@ -351,260 +351,262 @@ impl Stanford {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_accelerations[0];
-        let t4 = c2_arm * joint_velocities[0];
-        let t5 = joint_velocities[1] * t4;
-        let t6 = t3 + t5;
-        let t8 = s2_arm * joint_velocities[0];
-        let t9 = joint_velocities[1] * t8;
-        let t11 = s2_arm * t6 + c2_arm * t9;
-        let t12 = t8 * t4;
-        let t13 = t5 + t6;
-        let t15 = c2_arm * joint_accelerations[0];
-        let t16 = t9 - t15;
-        let t17 = t9 + t16;
-        let t19 = c2_arm * t13 - s2_arm * t17;
-        let t20 = t8 * t8;
-        let t21 = t4 * t4;
-        let t22 = t20 - t21;
-        let t23 = t12 + joint_accelerations[1];
-        let t24 = s2_arm * t23;
-        let t25 = joint_velocities[1] * joint_velocities[1];
-        let t28 = t24 + c2_arm * (t25 - t20);
-        let t29 = joint_accelerations[0] - t11;
-        let t30 = t12 - joint_accelerations[1];
-        let t31 = c2_arm * t30;
-        let t34 = t31 - s2_arm * (t21 - t25);
-        let t38 = 0.1524 * t3 - 9.81 * c2_arm;
-        let t42 = 0.1524 * t15 + 9.81 * s2_arm;
-        let t46 = 0.1524 * c2_arm;
-        let t47 = t21 + t25;
-        let t49 = s2_arm * joints[2];
-        let t55 = joint_velocities[0] * joint_velocities[0];
-        let t60 = joints[2] * t13 - 0.1524 * t55 + 2.0 * (joint_velocities[2] * t8);
-        let t64 = t20 + t25;
-        let t67 = joint_accelerations[2] - (t38 + joints[2] * t64);
-        let t72 = 0.1524 * s2_arm;
-        let t75 = s2_arm * t67;
-        let t78 = joints[2] * t30;
-        let t80 = 2.0 * (joint_velocities[1] * joint_velocities[2]) - (t42 + t78);
-        let t81 = c2_arm * t80;
-        let t91 = 0.1524 * t31 + t13 * t49 + t72 * t64 + s2_arm * t60;
-        let t92 = t80 - t78;
-        let t97 = t60 * t49 - 0.1524 * t81 - 0.1524 * t75;
-        let t98 = joints[2] * t80;
+        let t3 = s2_arm * joint_velocities[0];
+        let t4 = joint_velocities[1] * t3;
+        let t5 = c2_arm * joint_accelerations[0];
+        let t6 = t4 - t5;
+        let t7 = t4 + t6;
+        let t8 = c2_arm * t7;
+        let t9 = joint_accelerations[0] + t8;
+        let t10 = c2_arm * joint_velocities[0];
+        let t11 = t3 * t10;
+        let t12 = joint_velocities[1] * t10;
+        let t13 = s2_arm * joint_accelerations[0];
+        let t14 = t13 + t12;
+        let t15 = t12 + t14;
+        let t18 = c2_arm * t15 - s2_arm * t7;
+        let t19 = t3 * t3;
+        let t20 = t10 * t10;
+        let t21 = t19 - t20;
+        let t22 = t11 + joint_accelerations[1];
+        let t23 = s2_arm * t22;
+        let t24 = joint_velocities[1] * joint_velocities[1];
+        let t27 = t23 + c2_arm * (t24 - t19);
+        let t28 = t11 - joint_accelerations[1];
+        let t29 = c2_arm * t28;
+        let t32 = t29 - s2_arm * (t20 - t24);
+        let t36 = 0.1524 * t13 - 9.81 * c2_arm;
+        let t40 = 0.1524 * t5 + 9.81 * s2_arm;
+        let t44 = 0.1524 * c2_arm;
+        let t45 = t20 + t24;
+        let t47 = s2_arm * joints[2];
+        let t53 = joint_velocities[0] * joint_velocities[0];
+        let t56 = joint_velocities[2] + joint_velocities[2];
+        let t58 = joints[2] * t15 - 0.1524 * t53 + t3 * t56;
+        let t62 = t19 + t24;
+        let t65 = joint_accelerations[2] - (t36 + joints[2] * t62);
+        let t72 = joints[2] * t28;
+        let t74 = joint_velocities[1] * t56 - (t40 + t72);
+        let t76 = s2_arm * t65 + c2_arm * t74;
+        let t82 = 0.1524 * s2_arm;
+        let t86 = 0.1524 * t29 + t15 * t47 + t82 * t62 + s2_arm * t58;
+        let t87 = t74 - t72;
+        let t90 = t58 * t47 - 0.1524 * t76;
+        let t91 = joints[2] * t74;
+        let t95 = s2_arm * c4_arm;
+        let t98 = s4_arm * t3 + c4_arm * joint_velocities[1];
+        let t99 = t10 + joint_velocities[3];
+        let t100 = t98 * t99;
+        let t101 = t95 * t100;
         let t102 = s2_arm * s4_arm;
-        let t105 = s4_arm * joint_velocities[1] - c4_arm * t8;
-        let t106 = t4 + joint_velocities[3];
-        let t107 = t105 * t106;
-        let t108 = t102 * t107;
-        let t109 = s2_arm * c4_arm;
-        let t115 = s4_arm * t8 + c4_arm * joint_velocities[1];
-        let t117 = s4_arm * joint_accelerations[1] - c4_arm * t6
-            + joint_velocities[3] * t115;
-        let t120 = t105 * t115;
-        let t122 = t108 - t109 * t117 - c2_arm * t120;
-        let t124 = c4_arm * t107;
-        let t125 = s4_arm * t117 + t124;
-        let t130 = s4_arm * t6 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t105;
-        let t131 = t107 - t130;
-        let t133 = t115 * t106;
-        let t134 = t133 + t117;
-        let t137 = t105 * t105;
-        let t138 = t115 * t115;
-        let t139 = t137 - t138;
-        let t145 = t106 * t106;
-        let t146 = t145 - t137;
-        let t148 = joint_accelerations[3] - t16;
-        let t149 = t120 + t148;
-        let t152 = t133 - t117;
-        let t160 = t107 + t130;
-        let t162 = t138 - t145;
-        let t164 = t120 - t148;
-        let t174 = c2_arm * t148 - (t109 * t133 + t108);
-        let t176 = s4_arm * t133 - t124;
-        let t179 = s4_arm * t46 + c4_arm * t49;
-        let t183 = s4_arm * t49 - c4_arm * t46;
-        let t184 = t138 + t145;
-        let t191 = c4_arm * t60 - s4_arm * t80;
-        let t196 = joints[2] * c4_arm;
-        let t198 = joints[2] * s4_arm;
-        let t204 = t137 + t145;
-        let t212 = c4_arm * t80 + s4_arm * t60;
-        let t215 = t183 * t164 - t179 * t204 - t72 * t134 - (t109 * t67 + c2_arm * t212);
-        let t220 = t196 * t164 + t198 * t204 + s4_arm * t67;
-        let t226 = t109 * s5_arm - c2_arm * c5_arm;
-        let t229 = c5_arm * t105 - s5_arm * t106;
-        let t230 = t115 + joint_velocities[4];
-        let t231 = t229 * t230;
-        let t232 = t226 * t231;
-        let t235 = t109 * c5_arm + c2_arm * s5_arm;
-        let t241 = s5_arm * t105 + c5_arm * t106;
-        let t243 = c5_arm * t117 - s5_arm * t148 - joint_velocities[4] * t241;
-        let t246 = t229 * t241;
-        let t248 = t232 - t235 * t243 + t102 * t246;
-        let t249 = s4_arm * c5_arm;
-        let t251 = s4_arm * s5_arm;
-        let t252 = t251 * t231;
-        let t255 = t243 * t249 - t252 + c4_arm * t246;
-        let t257 = c5_arm * t231;
-        let t258 = s5_arm * t243 + t257;
-        let t263 = s5_arm * t117 + c5_arm * t148 + joint_velocities[4] * t229;
-        let t264 = t231 + t263;
-        let t266 = t241 * t230;
-        let t267 = t243 - t266;
-        let t270 = t229 * t229;
-        let t271 = t241 * t241;
-        let t272 = t270 - t271;
-        let t283 = t230 * t230;
-        let t284 = t283 - t270;
-        let t286 = t130 + joint_accelerations[4];
-        let t287 = t286 - t246;
-        let t290 = t266 + t243;
-        let t306 = t246 + t286;
-        let t308 = t271 - t283;
-        let t311 = t231 - t263;
-        let t325 = t235 * t266 - t232 + t102 * t286;
-        let t329 = t252 - t249 * t266 + c4_arm * t286;
-        let t331 = s5_arm * t266 + t257;
-        let t334 = c5_arm * t72 - s5_arm * t183;
-        let t338 = c5_arm * t183 + s5_arm * t72;
-        let t339 = t271 + t283;
-        let t347 = s5_arm * t212 + c5_arm * t67;
-        let t354 = c5_arm * t196;
-        let t356 = s5_arm * t196;
-        let t368 = t270 + t283;
-        let t375 = c5_arm * t212 - s5_arm * t67;
-        let t378 = t179 * t267 - (t338 * t306 + t334 * t368)
-            - (t235 * t191 + t102 * t375);
-        let t387 = t356 * t368 - t354 * t306 - t198 * t267 + t191 * t249 - c4_arm * t375;
-        let t390 = s5_arm * t306 + c5_arm * t368;
-        let t391 = s5_arm * t191;
-        let t397 = t102 * s6_arm - t235 * c6_arm;
-        let t403 = c6_arm * t230 - s6_arm * t229;
-        let t405 = c6_arm * t243 + s6_arm * t286 + joint_velocities[5] * t403;
-        let t409 = t235 * s6_arm + t102 * c6_arm;
-        let t412 = c6_arm * t229 + s6_arm * t230;
-        let t413 = t241 + joint_velocities[5];
-        let t414 = t412 * t413;
-        let t415 = t409 * t414;
-        let t417 = t412 * t403;
-        let t419 = t397 * t405 + t415 + t226 * t417;
-        let t422 = c6_arm * t249 + c4_arm * s6_arm;
-        let t426 = c4_arm * c6_arm - s6_arm * t249;
-        let t427 = t426 * t414;
-        let t430 = t405 * t422 + t427 - t251 * t417;
-        let t431 = s5_arm * s6_arm;
-        let t432 = t431 * t414;
-        let t433 = s5_arm * c6_arm;
-        let t437 = t432 - t405 * t433 - c5_arm * t417;
-        let t439 = c6_arm * t414;
-        let t440 = s6_arm * t405 + t439;
-        let t441 = t403 * t413;
-        let t442 = t441 + t405;
-        let t448 = c6_arm * t286 - s6_arm * t243 - joint_velocities[5] * t412;
-        let t449 = t414 - t448;
-        let t452 = t412 * t412;
-        let t453 = t403 * t403;
-        let t454 = t452 - t453;
-        let t470 = t263 + joint_accelerations[5];
-        let t471 = t417 + t470;
-        let t473 = t413 * t413;
-        let t474 = t473 - t452;
-        let t477 = t441 - t405;
-        let t500 = t453 - t473;
-        let t502 = t417 - t470;
-        let t505 = t414 + t448;
-        let t537 = c6_arm * t179 - s6_arm * t338;
-        let t541 = c6_arm * t338 + s6_arm * t179;
-        let t542 = t453 + t473;
-        let t550 = c6_arm * t191 - s6_arm * t375;
-        let t557 = c6_arm * t354 - s6_arm * t198;
-        let t561 = s6_arm * t354 + c6_arm * t198;
-        let t579 = t452 + t473;
-        let t587 = c6_arm * t375 + s6_arm * t191;
+        let t108 = s4_arm * joint_velocities[1] - c4_arm * t3;
+        let t110 = s4_arm * t14 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t108;
+        let t113 = t108 * t98;
+        let t115 = t101 + t102 * t110 + c2_arm * t113;
+        let t116 = t9 - t115;
+        let t117 = t3 * t99;
+        let t118 = t108 * t99;
+        let t119 = t118 - t110;
+        let t121 = t117 + c4_arm * t119;
+        let t122 = t121 - t28;
+        let t125 = t108 * t108;
+        let t126 = t98 * t98;
+        let t127 = t125 - t126;
+        let t134 = s4_arm * joint_accelerations[1] - c4_arm * t14
+            + joint_velocities[3] * t98;
+        let t135 = t100 + t134;
+        let t139 = t99 * t99;
+        let t140 = t139 - t125;
+        let t142 = joint_accelerations[3] - t6;
+        let t143 = t113 + t142;
+        let t146 = t100 - t134;
+        let t152 = t118 + t110;
+        let t154 = t126 - t139;
+        let t156 = t113 - t142;
+        let t166 = c2_arm * t142 - (t101 + t102 * t118);
+        let t169 = s4_arm * t44 + c4_arm * t47;
+        let t173 = s4_arm * t47 - c4_arm * t44;
+        let t174 = t126 + t139;
+        let t181 = c4_arm * t58 - s4_arm * t74;
+        let t186 = joints[2] * c4_arm;
+        let t188 = joints[2] * s4_arm;
+        let t194 = t125 + t139;
+        let t202 = c4_arm * t74 + s4_arm * t58;
+        let t205 = t173 * t156 - t169 * t194 - t82 * t135 - (t95 * t65 + c2_arm * t202);
+        let t210 = t186 * t156 + t188 * t194 + s4_arm * t65;
+        let t216 = t95 * s5_arm - c2_arm * c5_arm;
+        let t219 = c5_arm * t108 - s5_arm * t99;
+        let t220 = t98 + joint_velocities[4];
+        let t221 = t219 * t220;
+        let t222 = t216 * t221;
+        let t225 = t95 * c5_arm + c2_arm * s5_arm;
+        let t231 = s5_arm * t108 + c5_arm * t99;
+        let t233 = c5_arm * t134 - s5_arm * t142 - joint_velocities[4] * t231;
+        let t236 = t219 * t231;
+        let t238 = t222 - t225 * t233 + t102 * t236;
+        let t239 = s4_arm * c5_arm;
+        let t241 = s4_arm * s5_arm;
+        let t242 = t241 * t221;
+        let t245 = t233 * t239 - t242 + c4_arm * t236;
+        let t246 = t108 * t220;
+        let t251 = s5_arm * t134 + c5_arm * t142 + joint_velocities[4] * t219;
+        let t252 = t221 + t251;
+        let t254 = c5_arm * t252 - t246;
+        let t255 = t156 + t254;
+        let t257 = t231 * t220;
+        let t258 = t233 - t257;
+        let t261 = t219 * t219;
+        let t262 = t231 * t231;
+        let t263 = t261 - t262;
+        let t273 = t220 * t220;
+        let t274 = t273 - t261;
+        let t276 = t110 + joint_accelerations[4];
+        let t277 = t276 - t236;
+        let t280 = t257 + t233;
+        let t295 = t236 + t276;
+        let t297 = t262 - t273;
+        let t300 = t221 - t251;
+        let t314 = t225 * t257 - t222 + t102 * t276;
+        let t318 = t242 - t239 * t257 + c4_arm * t276;
+        let t321 = c5_arm * t82 - s5_arm * t173;
+        let t325 = c5_arm * t173 + s5_arm * t82;
+        let t326 = t262 + t273;
+        let t334 = s5_arm * t202 + c5_arm * t65;
+        let t341 = c5_arm * t186;
+        let t343 = s5_arm * t186;
+        let t355 = t261 + t273;
+        let t362 = c5_arm * t202 - s5_arm * t65;
+        let t365 = t169 * t258 - (t325 * t295 + t321 * t355)
+            - (t225 * t181 + t102 * t362);
+        let t374 = t343 * t355 - t341 * t295 - t188 * t258 + t181 * t239 - c4_arm * t362;
+        let t377 = s5_arm * t295 + c5_arm * t355;
+        let t378 = s5_arm * t181;
+        let t384 = t102 * s6_arm - t225 * c6_arm;
+        let t390 = c6_arm * t220 - s6_arm * t219;
+        let t392 = c6_arm * t233 + s6_arm * t276 + joint_velocities[5] * t390;
+        let t396 = t225 * s6_arm + t102 * c6_arm;
+        let t399 = c6_arm * t219 + s6_arm * t220;
+        let t400 = t231 + joint_velocities[5];
+        let t401 = t399 * t400;
+        let t402 = t396 * t401;
+        let t404 = t399 * t390;
+        let t406 = t384 * t392 + t402 + t216 * t404;
+        let t409 = c6_arm * t239 + c4_arm * s6_arm;
+        let t413 = c4_arm * c6_arm - s6_arm * t239;
+        let t414 = t413 * t401;
+        let t417 = t392 * t409 + t414 - t241 * t404;
+        let t418 = s5_arm * s6_arm;
+        let t419 = t418 * t401;
+        let t420 = s5_arm * c6_arm;
+        let t424 = t419 - t392 * t420 - c5_arm * t404;
+        let t425 = t219 * t400;
+        let t430 = c6_arm * t276 - s6_arm * t233 - joint_velocities[5] * t399;
+        let t431 = t401 - t430;
+        let t433 = t425 - c6_arm * t431;
+        let t434 = t295 - t433;
+        let t435 = t390 * t400;
+        let t436 = t435 + t392;
+        let t440 = t399 * t399;
+        let t441 = t390 * t390;
+        let t442 = t440 - t441;
+        let t457 = t251 + joint_accelerations[5];
+        let t458 = t404 + t457;
+        let t460 = t400 * t400;
+        let t461 = t460 - t440;
+        let t464 = t435 - t392;
+        let t486 = t441 - t460;
+        let t488 = t404 - t457;
+        let t491 = t401 + t430;
+        let t521 = c6_arm * t169 - s6_arm * t325;
+        let t525 = c6_arm * t325 + s6_arm * t169;
+        let t526 = t441 + t460;
+        let t534 = c6_arm * t181 - s6_arm * t362;
+        let t541 = c6_arm * t341 - s6_arm * t188;
+        let t545 = s6_arm * t341 + c6_arm * t188;
+        let t563 = t440 + t460;
+        let t571 = c6_arm * t362 + s6_arm * t181;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t11, t19, -t28, t29, t34, 0.0,
-                0.1524 * t28, -(0.1524 * t34), 0.3048 * joint_accelerations[0],
-                0.02322576 * joint_accelerations[0], 0.0, 0.0, 0.0, 0.0, t11, -t28, -t19, 0.0, -t34,
-                t29, t46 * t47 - t17 * t49 + 0.1524 * t24 + c2_arm * t60,
-                t15 * t46 - t55 * t49 + t3 * t72 - (t75 + t81), t91, t97, 0.0, 0.0, 0.0, 0.0, t122,
-                t109 * t131 + t102 * t134 + c2_arm * t139,
-                t102 * t146 - t109 * t149 - c2_arm * t152, t11 - t122,
-                c2_arm * t160 - (t109 * t162 + t102 * t164), t174,
-                t179 * t149 - t183 * t184 - t72 * t131 + c2_arm * t191 - t102 * t67, t215, t91, t97,
-                0.0, 0.0, 0.0, 0.0, t248, t235 * t264 + t226 * t267 + t102 * t272,
-                t226 * t284 - t235 * t287 + t102 * t290, t122 + t174 - t248,
-                t226 * t306 - t235 * t308 + t102 * t311, t325,
-                t334 * t287 - t338 * t339 + t179 * t264 - (t226 * t191 + t102 * t347), t378, t215,
-                t97, 0.0, 0.0, 0.0, 0.0, t419, t409 * t442 - t397 * t449 - t226 * t454,
-                t397 * t471 + t409 * t474 + t226 * t477, t248 + t325 - t419,
-                t397 * t500 - t409 * t502 - t226 * t505, t397 * t441 - t415 - t226 * t470,
-                t537 * t471 - t541 * t542 - t334 * t449 - (t409 * t347 + t226 * t550),
-                t541 * t502 - t537 * t579 - t334 * t442 + t397 * t347 + t226 * t587, -t378, t97,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t9, t18, -t27, -t8, t32, 0.0,
+                0.1524 * t27, -(0.1524 * t32), 0.3048 * joint_accelerations[0],
+                0.02322576 * joint_accelerations[0], 0.0, 0.0, 0.0, 0.0, t9, -t27, -t18, 0.0, -t32,
+                -t8, t44 * t45 - t7 * t47 + 0.1524 * t23 + c2_arm * t58,
+                joint_accelerations[0] * 0.1524 - t53 * t47 - t76, t86, t90, 0.0, 0.0, 0.0, 0.0,
+                t116, s2_arm * (t122 + t121) + c2_arm * t127,
+                t102 * t140 - t95 * t143 - c2_arm * t146, t115,
+                c2_arm * t152 - (t95 * t154 + t102 * t156), t166,
+                t169 * t143 - t173 * t174 - t82 * t119 + c2_arm * t181 - t102 * t65, t205, t86, t90,
+                0.0, 0.0, 0.0, 0.0, t238, t225 * t252 + t216 * t258 + t102 * t263,
+                t216 * t274 - t225 * t277 + t102 * t280, -(t238 - (t116 + t166)),
+                t216 * t295 - t225 * t297 + t102 * t300, t314,
+                t321 * t277 - t325 * t326 + t169 * t252 - (t216 * t181 + t102 * t334), t365, t205,
+                t90, 0.0, 0.0, 0.0, 0.0, t406, t396 * t436 - t384 * t431 - t216 * t442,
+                t384 * t458 + t396 * t461 + t216 * t464, t238 + t314 - t406,
+                t384 * t486 - t396 * t488 - t216 * t491, t384 * t435 - t402 - t216 * t457,
+                t521 * t458 - t525 * t526 - t321 * t431 - (t396 * t334 + t216 * t534),
+                t525 * t488 - t521 * t563 - t321 * t436 + t384 * t334 + t216 * t571, -t365, t90,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t12, t22, -t3, t12, -t15, joint_accelerations[1], t38,
-                t42, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t12, -t3, -t22,
-                joint_accelerations[1], t15, t12, -(joints[2] * t47 + t67), -(joints[2] * t15), t92,
-                t98, 0.0, 0.0, 0.0, 0.0, t125, c4_arm * t134 - s4_arm * t131,
-                s4_arm * t149 + c4_arm * t146, -(t30 + t125), s4_arm * t162 - c4_arm * t164, t176,
-                -(t196 * t184 + t198 * t149 + c4_arm * t67), t220, t92, t98, 0.0, 0.0, 0.0, 0.0,
-                t255, c4_arm * t272 - (t249 * t264 + t251 * t267),
-                t249 * t287 - t251 * t284 + c4_arm * t290, t125 + t176 - t255,
-                t249 * t308 - t251 * t306 + c4_arm * t311, t329,
-                t191 * t251 - c4_arm * t347 - (t354 * t339 + t356 * t287 + t198 * t264), t387, t220,
-                t98, 0.0, 0.0, 0.0, 0.0, t430, t426 * t442 - t422 * t449 + t251 * t454,
-                t422 * t471 + t426 * t474 - t251 * t477, t255 + t329 - t430,
-                t422 * t500 - t426 * t502 + t251 * t505, t422 * t441 - t427 + t251 * t470,
-                t356 * t449 - (t557 * t542 + t561 * t471) + t251 * t550 - t347 * t426,
-                t557 * t502 + t561 * t579 + t356 * t442 + t347 * t422 - t251 * t587, -t387, t98,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t21, -t13, t11, -t5, joint_accelerations[1], t36,
+                t40, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t11, -t13, -t21,
+                joint_accelerations[1], t5, t11, -(joints[2] * t45 + t65), -(joints[2] * t5), t87,
+                t91, 0.0, 0.0, 0.0, 0.0, t122, c4_arm * t135 - s4_arm * t119,
+                s4_arm * t143 + c4_arm * t140, -t121, s4_arm * t154 - c4_arm * t156, t117,
+                -(t186 * t174 + t188 * t143 + c4_arm * t65), t210, t87, t91, 0.0, 0.0, 0.0, 0.0,
+                t245, c4_arm * t263 - s4_arm * (t255 + t254),
+                t239 * t277 - t241 * t274 + c4_arm * t280, t122 + t117 - t245,
+                t239 * t297 - t241 * t295 + c4_arm * t300, t318,
+                t181 * t241 - c4_arm * t334 - (t341 * t326 + t343 * t277 + t188 * t252), t374, t210,
+                t91, 0.0, 0.0, 0.0, 0.0, t417, t413 * t436 - t409 * t431 + t241 * t442,
+                t409 * t458 + t413 * t461 - t241 * t464, t245 + t318 - t417,
+                t409 * t486 - t413 * t488 + t241 * t491, t409 * t435 - t414 + t241 * t457,
+                t343 * t431 - (t541 * t526 + t545 * t458) + t241 * t534 - t334 * t413,
+                t541 * t488 + t545 * t563 + t343 * t436 + t334 * t409 - t241 * t571, -t374, t91,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t23, -t3, -t64, t67,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t22, -t13, -t62, t65,
                 joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t131,
-                t134, -t64, t67, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                s5_arm * t339 - c5_arm * t287, t390, t134, t67, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t433 * t542 + t431 * t471 + c5_arm * t449,
-                c5_arm * t442 - (t433 * t502 + t431 * t579), -t390, t67, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t119,
+                t135, -t62, t65, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                s5_arm * t326 - c5_arm * t277, t377, t135, t65, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, t420 * t526 + t418 * t458 + c5_arm * t431,
+                c5_arm * t436 - (t420 * t488 + t418 * t563), -t377, t65, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t120, t139, -t152, t120, t160, t148, t191, -t212, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, -t258,
-                s5_arm * t264 - c5_arm * t267, -(s5_arm * t287 + c5_arm * t284), t258 - t164,
-                -(s5_arm * t308 + c5_arm * t306), t331, c5_arm * t191, -t391, -t212, 0.0, 0.0, 0.0,
-                0.0, 0.0, t437, t433 * t449 + t431 * t442 + c5_arm * t454,
-                t431 * t474 - t433 * t471 - c5_arm * t477, t331 - t258 - t437,
-                c5_arm * t505 - (t433 * t500 + t431 * t502), c5_arm * t470 - (t433 * t441 + t432),
-                c5_arm * t550 - t347 * t431, -(t347 * t433 + c5_arm * t587), t391, 0.0, 0.0, 0.0,
+                -t113, t127, -t146, t113, t152, t142, t181, -t202, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, -t255,
+                s5_arm * t252 - c5_arm * t258, -(s5_arm * t277 + c5_arm * t274), t254,
+                -(s5_arm * t297 + c5_arm * t295), t246, c5_arm * t181, -t378, -t202, 0.0, 0.0, 0.0,
+                0.0, 0.0, t424, s5_arm * (t434 - t433) + c5_arm * t442,
+                t418 * t461 - t420 * t458 - c5_arm * t464, -(t424 + t255 - t246),
+                c5_arm * t491 - (t420 * t486 + t418 * t488), c5_arm * t457 - (t420 * t435 + t419),
+                c5_arm * t534 - t334 * t418, -(t334 * t420 + c5_arm * t571), t378, 0.0, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t246, t272, t290,
-                -t246, t311, t286, -t347, -t375, 0.0, 0.0, joint_accelerations[4],
-                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0, t440,
-                c6_arm * t442 - s6_arm * t449, s6_arm * t471 + c6_arm * t474, t306 - t440,
-                s6_arm * t500 - c6_arm * t502, s6_arm * t441 - t439, -(c6_arm * t347),
-                s6_arm * t347, t375, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t236, t263, t280,
+                -t236, t300, t276, -t334, -t362, 0.0, 0.0, joint_accelerations[4],
+                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0, t434,
+                c6_arm * t436 - s6_arm * t431, s6_arm * t458 + c6_arm * t461, t433,
+                s6_arm * t486 - c6_arm * t488, -t425, -(c6_arm * t334), s6_arm * t334, t362, 0.0,
+                0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t417, t454, -t477, t417, t505,
-                t470, t550, -t587, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t404, t442, -t464, t404, t491,
+                t457, t534, -t571, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -619,7 +621,7 @@ impl Stanford {
     /// Output: 6 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 579 operations (241 additions, 338 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 474 intermediates.
+    /// 566 operations (236 additions, 330 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 461 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 6],
@@ -629,232 +631,231 @@ impl Stanford {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_accelerations[0];
-        let t4 = c2_arm * joint_velocities[0];
-        let t5 = joint_velocities[1] * t4;
-        let t6 = t3 + t5;
-        let t8 = s2_arm * joint_velocities[0];
-        let t9 = joint_velocities[1] * t8;
-        let t12 = t8 * t4;
-        let t13 = t5 + t6;
-        let t15 = c2_arm * joint_accelerations[0];
-        let t16 = t9 - t15;
-        let t17 = t9 + t16;
-        let t20 = t8 * t8;
-        let t21 = t4 * t4;
-        let t23 = t12 + joint_accelerations[1];
-        let t24 = s2_arm * t23;
-        let t25 = joint_velocities[1] * joint_velocities[1];
-        let t28 = t24 + c2_arm * (t25 - t20);
-        let t29 = t12 - joint_accelerations[1];
-        let t30 = c2_arm * t29;
-        let t33 = t30 - s2_arm * (t21 - t25);
-        let t37 = 0.1524 * t3 - 9.81 * c2_arm;
-        let t41 = 0.1524 * t15 + 9.81 * s2_arm;
-        let t43 = 0.1524 * c2_arm;
-        let t44 = t21 + t25;
-        let t46 = s2_arm * joints[2];
-        let t52 = joint_velocities[0] * joint_velocities[0];
-        let t57 = joints[2] * t13 - 0.1524 * t52 + 2.0 * (joint_velocities[2] * t8);
-        let t61 = t20 + t25;
-        let t64 = joint_accelerations[2] - (t37 + joints[2] * t61);
-        let t69 = 0.1524 * s2_arm;
-        let t72 = s2_arm * t64;
-        let t75 = joints[2] * t29;
-        let t77 = 2.0 * (joint_velocities[1] * joint_velocities[2]) - (t41 + t75);
-        let t78 = c2_arm * t77;
-        let t99 = s2_arm * s4_arm;
-        let t102 = s4_arm * joint_velocities[1] - c4_arm * t8;
-        let t103 = t4 + joint_velocities[3];
-        let t104 = t102 * t103;
-        let t105 = t99 * t104;
-        let t106 = s2_arm * c4_arm;
-        let t112 = s4_arm * t8 + c4_arm * joint_velocities[1];
-        let t114 = s4_arm * joint_accelerations[1] - c4_arm * t6
-            + joint_velocities[3] * t112;
-        let t117 = t102 * t112;
-        let t121 = c4_arm * t104;
-        let t127 = s4_arm * t6 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t102;
-        let t128 = t104 - t127;
-        let t130 = t112 * t103;
-        let t131 = t130 + t114;
-        let t134 = t102 * t102;
-        let t135 = t112 * t112;
-        let t136 = t134 - t135;
-        let t142 = t103 * t103;
-        let t143 = t142 - t134;
-        let t145 = joint_accelerations[3] - t16;
-        let t146 = t117 + t145;
-        let t149 = t130 - t114;
-        let t155 = t104 + t127;
-        let t157 = t135 - t142;
-        let t159 = t117 - t145;
-        let t174 = s4_arm * t43 + c4_arm * t46;
-        let t178 = s4_arm * t46 - c4_arm * t43;
-        let t179 = t135 + t142;
-        let t186 = c4_arm * t57 - s4_arm * t77;
-        let t191 = joints[2] * c4_arm;
-        let t193 = joints[2] * s4_arm;
-        let t199 = t134 + t142;
-        let t207 = c4_arm * t77 + s4_arm * t57;
-        let t221 = t106 * s5_arm - c2_arm * c5_arm;
-        let t224 = c5_arm * t102 - s5_arm * t103;
-        let t225 = t112 + joint_velocities[4];
-        let t226 = t224 * t225;
-        let t227 = t221 * t226;
-        let t230 = t106 * c5_arm + c2_arm * s5_arm;
-        let t236 = s5_arm * t102 + c5_arm * t103;
-        let t238 = c5_arm * t114 - s5_arm * t145 - joint_velocities[4] * t236;
-        let t241 = t224 * t236;
-        let t244 = s4_arm * c5_arm;
-        let t246 = s4_arm * s5_arm;
-        let t247 = t246 * t226;
-        let t252 = c5_arm * t226;
-        let t258 = s5_arm * t114 + c5_arm * t145 + joint_velocities[4] * t224;
-        let t259 = t226 + t258;
-        let t261 = t236 * t225;
-        let t262 = t238 - t261;
-        let t265 = t224 * t224;
-        let t266 = t236 * t236;
-        let t267 = t265 - t266;
-        let t278 = t225 * t225;
-        let t279 = t278 - t265;
-        let t281 = t127 + joint_accelerations[4];
-        let t282 = t281 - t241;
-        let t285 = t261 + t238;
-        let t296 = t241 + t281;
-        let t298 = t266 - t278;
-        let t301 = t226 - t258;
-        let t324 = c5_arm * t69 - s5_arm * t178;
-        let t328 = c5_arm * t178 + s5_arm * t69;
-        let t329 = t266 + t278;
-        let t337 = s5_arm * t207 + c5_arm * t64;
-        let t344 = c5_arm * t191;
-        let t346 = s5_arm * t191;
-        let t358 = t265 + t278;
-        let t365 = c5_arm * t207 - s5_arm * t64;
-        let t387 = t99 * s6_arm - t230 * c6_arm;
-        let t393 = c6_arm * t225 - s6_arm * t224;
-        let t395 = c6_arm * t238 + s6_arm * t281 + joint_velocities[5] * t393;
-        let t399 = t230 * s6_arm + t99 * c6_arm;
-        let t402 = c6_arm * t224 + s6_arm * t225;
-        let t403 = t236 + joint_velocities[5];
-        let t404 = t402 * t403;
-        let t405 = t399 * t404;
-        let t407 = t402 * t393;
-        let t412 = c6_arm * t244 + c4_arm * s6_arm;
-        let t416 = c4_arm * c6_arm - s6_arm * t244;
-        let t417 = t416 * t404;
-        let t421 = s5_arm * s6_arm;
-        let t422 = t421 * t404;
-        let t423 = s5_arm * c6_arm;
-        let t429 = c6_arm * t404;
-        let t431 = t393 * t403;
-        let t432 = t431 + t395;
-        let t438 = c6_arm * t281 - s6_arm * t238 - joint_velocities[5] * t402;
-        let t439 = t404 - t438;
-        let t442 = t402 * t402;
-        let t443 = t393 * t393;
-        let t444 = t442 - t443;
-        let t460 = t258 + joint_accelerations[5];
-        let t461 = t407 + t460;
-        let t463 = t403 * t403;
-        let t464 = t463 - t442;
-        let t467 = t431 - t395;
-        let t483 = t443 - t463;
-        let t485 = t407 - t460;
-        let t488 = t404 + t438;
-        let t520 = c6_arm * t174 - s6_arm * t328;
-        let t524 = c6_arm * t328 + s6_arm * t174;
-        let t525 = t443 + t463;
-        let t533 = c6_arm * t186 - s6_arm * t365;
-        let t540 = c6_arm * t344 - s6_arm * t193;
-        let t544 = s6_arm * t344 + c6_arm * t193;
-        let t562 = t442 + t463;
-        let t570 = c6_arm * t365 + s6_arm * t186;
+        let t3 = c2_arm * joint_velocities[0];
+        let t4 = joint_velocities[1] * t3;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t6 = t5 + t4;
+        let t7 = t4 + t6;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t14 = t12 - t13;
+        let t15 = t12 + t14;
+        let t18 = t9 * t9;
+        let t19 = t3 * t3;
+        let t21 = t10 + joint_accelerations[1];
+        let t22 = s2_arm * t21;
+        let t23 = joint_velocities[1] * joint_velocities[1];
+        let t26 = t22 + c2_arm * (t23 - t18);
+        let t27 = t10 - joint_accelerations[1];
+        let t28 = c2_arm * t27;
+        let t31 = t28 - s2_arm * (t19 - t23);
+        let t35 = 0.1524 * t5 - 9.81 * c2_arm;
+        let t39 = 0.1524 * t13 + 9.81 * s2_arm;
+        let t41 = 0.1524 * c2_arm;
+        let t42 = t19 + t23;
+        let t44 = s2_arm * joints[2];
+        let t50 = joint_velocities[0] * joint_velocities[0];
+        let t53 = joint_velocities[2] + joint_velocities[2];
+        let t55 = joints[2] * t7 - 0.1524 * t50 + t9 * t53;
+        let t59 = t18 + t23;
+        let t62 = joint_accelerations[2] - (t35 + joints[2] * t59);
+        let t69 = joints[2] * t27;
+        let t71 = joint_velocities[1] * t53 - (t39 + t69);
+        let t73 = s2_arm * t62 + c2_arm * t71;
+        let t79 = 0.1524 * s2_arm;
+        let t92 = s2_arm * s4_arm;
+        let t95 = s4_arm * joint_velocities[1] - c4_arm * t9;
+        let t96 = t3 + joint_velocities[3];
+        let t97 = t95 * t96;
+        let t98 = t92 * t97;
+        let t99 = s2_arm * c4_arm;
+        let t105 = s4_arm * t9 + c4_arm * joint_velocities[1];
+        let t107 = s4_arm * joint_accelerations[1] - c4_arm * t6
+            + joint_velocities[3] * t105;
+        let t110 = t95 * t105;
+        let t113 = t9 * t96;
+        let t114 = t105 * t96;
+        let t115 = t114 + t107;
+        let t122 = s4_arm * t6 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t95;
+        let t123 = t97 - t122;
+        let t127 = t95 * t95;
+        let t128 = t105 * t105;
+        let t129 = t127 - t128;
+        let t135 = t96 * t96;
+        let t136 = t135 - t127;
+        let t138 = joint_accelerations[3] - t14;
+        let t139 = t110 + t138;
+        let t142 = t114 - t107;
+        let t148 = t97 + t122;
+        let t150 = t128 - t135;
+        let t152 = t110 - t138;
+        let t165 = s4_arm * t41 + c4_arm * t44;
+        let t169 = s4_arm * t44 - c4_arm * t41;
+        let t170 = t128 + t135;
+        let t177 = c4_arm * t55 - s4_arm * t71;
+        let t182 = joints[2] * c4_arm;
+        let t184 = joints[2] * s4_arm;
+        let t190 = t127 + t135;
+        let t198 = c4_arm * t71 + s4_arm * t55;
+        let t212 = t99 * s5_arm - c2_arm * c5_arm;
+        let t215 = c5_arm * t95 - s5_arm * t96;
+        let t216 = t105 + joint_velocities[4];
+        let t217 = t215 * t216;
+        let t218 = t212 * t217;
+        let t221 = t99 * c5_arm + c2_arm * s5_arm;
+        let t227 = s5_arm * t95 + c5_arm * t96;
+        let t229 = c5_arm * t107 - s5_arm * t138 - joint_velocities[4] * t227;
+        let t232 = t215 * t227;
+        let t235 = s4_arm * c5_arm;
+        let t237 = s4_arm * s5_arm;
+        let t238 = t237 * t217;
+        let t242 = t95 * t216;
+        let t243 = t227 * t216;
+        let t244 = t229 - t243;
+        let t251 = s5_arm * t107 + c5_arm * t138 + joint_velocities[4] * t215;
+        let t252 = t217 + t251;
+        let t256 = t215 * t215;
+        let t257 = t227 * t227;
+        let t258 = t256 - t257;
+        let t269 = t216 * t216;
+        let t270 = t269 - t256;
+        let t272 = t122 + joint_accelerations[4];
+        let t273 = t272 - t232;
+        let t276 = t243 + t229;
+        let t287 = t232 + t272;
+        let t289 = t257 - t269;
+        let t292 = t217 - t251;
+        let t313 = c5_arm * t79 - s5_arm * t169;
+        let t317 = c5_arm * t169 + s5_arm * t79;
+        let t318 = t257 + t269;
+        let t326 = s5_arm * t198 + c5_arm * t62;
+        let t333 = c5_arm * t182;
+        let t335 = s5_arm * t182;
+        let t347 = t256 + t269;
+        let t354 = c5_arm * t198 - s5_arm * t62;
+        let t376 = t92 * s6_arm - t221 * c6_arm;
+        let t382 = c6_arm * t216 - s6_arm * t215;
+        let t384 = c6_arm * t229 + s6_arm * t272 + joint_velocities[5] * t382;
+        let t388 = t221 * s6_arm + t92 * c6_arm;
+        let t391 = c6_arm * t215 + s6_arm * t216;
+        let t392 = t227 + joint_velocities[5];
+        let t393 = t391 * t392;
+        let t394 = t388 * t393;
+        let t396 = t391 * t382;
+        let t401 = c6_arm * t235 + c4_arm * s6_arm;
+        let t405 = c4_arm * c6_arm - s6_arm * t235;
+        let t406 = t405 * t393;
+        let t410 = s5_arm * s6_arm;
+        let t411 = t410 * t393;
+        let t412 = s5_arm * c6_arm;
+        let t417 = t215 * t392;
+        let t418 = t382 * t392;
+        let t419 = t418 + t384;
+        let t427 = c6_arm * t272 - s6_arm * t229 - joint_velocities[5] * t391;
+        let t428 = t393 - t427;
+        let t431 = t391 * t391;
+        let t432 = t382 * t382;
+        let t433 = t431 - t432;
+        let t449 = t251 + joint_accelerations[5];
+        let t450 = t396 + t449;
+        let t452 = t392 * t392;
+        let t453 = t452 - t431;
+        let t456 = t418 - t384;
+        let t472 = t432 - t452;
+        let t474 = t396 - t449;
+        let t477 = t393 + t427;
+        let t507 = c6_arm * t165 - s6_arm * t317;
+        let t511 = c6_arm * t317 + s6_arm * t165;
+        let t512 = t432 + t452;
+        let t520 = c6_arm * t177 - s6_arm * t354;
+        let t527 = c6_arm * t333 - s6_arm * t184;
+        let t531 = s6_arm * t333 + c6_arm * t184;
+        let t549 = t431 + t452;
+        let t557 = c6_arm * t354 + s6_arm * t177;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t6 + c2_arm * t9,
-                c2_arm * t13 - s2_arm * t17, -t28, t33, 0.0, 0.1524 * t28, -(0.1524 * t33), 0.0,
-                0.0, 0.0, t43 * t44 - t17 * t46 + 0.1524 * t24 + c2_arm * t57,
-                t15 * t43 - t52 * t46 + t3 * t69 - (t72 + t78),
-                0.1524 * t30 + t13 * t46 + t69 * t61 + s2_arm * t57,
-                t57 * t46 - 0.1524 * t78 - 0.1524 * t72, 0.0, 0.0, 0.0, 0.0,
-                t105 - t106 * t114 - c2_arm * t117, t106 * t128 + t99 * t131 + c2_arm * t136,
-                t99 * t143 - t106 * t146 - c2_arm * t149,
-                c2_arm * t155 - (t106 * t157 + t99 * t159), c2_arm * t145 - (t106 * t130 + t105),
-                t174 * t146 - t178 * t179 - t69 * t128 + c2_arm * t186 - t99 * t64,
-                t178 * t159 - t174 * t199 - t69 * t131 - (t106 * t64 + c2_arm * t207), 0.0, 0.0,
-                0.0, 0.0, t227 - t230 * t238 + t99 * t241, t230 * t259 + t221 * t262 + t99 * t267,
-                t221 * t279 - t230 * t282 + t99 * t285, t221 * t296 - t230 * t298 + t99 * t301,
-                t230 * t261 - t227 + t99 * t281,
-                t324 * t282 - t328 * t329 + t174 * t259 - (t221 * t186 + t99 * t337),
-                t174 * t262 - (t328 * t296 + t324 * t358) - (t230 * t186 + t99 * t365), 0.0, 0.0,
-                0.0, 0.0, t387 * t395 + t405 + t221 * t407, t399 * t432 - t387 * t439 - t221 * t444,
-                t387 * t461 + t399 * t464 + t221 * t467, t387 * t483 - t399 * t485 - t221 * t488,
-                t387 * t431 - t405 - t221 * t460,
-                t520 * t461 - t524 * t525 - t324 * t439 - (t399 * t337 + t221 * t533),
-                t524 * t485 - t520 * t562 - t324 * t432 + t387 * t337 + t221 * t570, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t7,
+                c2_arm * t7 - s2_arm * t15, -t26, t31, 0.0, 0.1524 * t26, -(0.1524 * t31), 0.0, 0.0,
+                0.0, t41 * t42 - t15 * t44 + 0.1524 * t22 + c2_arm * t55,
+                joint_accelerations[0] * 0.1524 - t50 * t44 - t73,
+                0.1524 * t28 + t7 * t44 + t79 * t59 + s2_arm * t55, t55 * t44 - 0.1524 * t73, 0.0,
+                0.0, 0.0, 0.0, t98 - t99 * t107 - c2_arm * t110,
+                t99 * t123 + t92 * t115 + c2_arm * t129, t92 * t136 - t99 * t139 - c2_arm * t142,
+                c2_arm * t148 - (t99 * t150 + t92 * t152), c2_arm * t138 - (t99 * t114 + t98),
+                t165 * t139 - t169 * t170 - t79 * t123 + c2_arm * t177 - t92 * t62,
+                t169 * t152 - t165 * t190 - t79 * t115 - (t99 * t62 + c2_arm * t198), 0.0, 0.0, 0.0,
+                0.0, t218 - t221 * t229 + t92 * t232, t221 * t252 + t212 * t244 + t92 * t258,
+                t212 * t270 - t221 * t273 + t92 * t276, t212 * t287 - t221 * t289 + t92 * t292,
+                t221 * t243 - t218 + t92 * t272,
+                t313 * t273 - t317 * t318 + t165 * t252 - (t212 * t177 + t92 * t326),
+                t165 * t244 - (t317 * t287 + t313 * t347) - (t221 * t177 + t92 * t354), 0.0, 0.0,
+                0.0, 0.0, t376 * t384 + t394 + t212 * t396, t388 * t419 - t376 * t428 - t212 * t433,
+                t376 * t450 + t388 * t453 + t212 * t456, t376 * t472 - t388 * t474 - t212 * t477,
+                t376 * t418 - t394 - t212 * t449,
+                t507 * t450 - t511 * t512 - t313 * t428 - (t388 * t326 + t212 * t520),
+                t511 * t474 - t507 * t549 - t313 * t419 + t376 * t326 + t212 * t557, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, -t12, t20 - t21, -t3, -t15, joint_accelerations[1], t37, t41,
+                0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, -t5, -t13, joint_accelerations[1], t35, t39,
                 joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0,
-                -(joints[2] * t44 + t64), -(joints[2] * t15), t77 - t75, joints[2] * t77, 0.0, 0.0,
-                0.0, 0.0, s4_arm * t114 + t121, c4_arm * t131 - s4_arm * t128,
-                s4_arm * t146 + c4_arm * t143, s4_arm * t157 - c4_arm * t159, s4_arm * t130 - t121,
-                -(t191 * t179 + t193 * t146 + c4_arm * t64),
-                t191 * t159 + t193 * t199 + s4_arm * t64, 0.0, 0.0, 0.0, 0.0,
-                t238 * t244 - t247 + c4_arm * t241, c4_arm * t267 - (t244 * t259 + t246 * t262),
-                t244 * t282 - t246 * t279 + c4_arm * t285,
-                t244 * t298 - t246 * t296 + c4_arm * t301, t247 - t244 * t261 + c4_arm * t281,
-                t186 * t246 - c4_arm * t337 - (t344 * t329 + t346 * t282 + t193 * t259),
-                t346 * t358 - t344 * t296 - t193 * t262 + t186 * t244 - c4_arm * t365, 0.0, 0.0,
-                0.0, 0.0, t395 * t412 + t417 - t246 * t407, t416 * t432 - t412 * t439 + t246 * t444,
-                t412 * t461 + t416 * t464 - t246 * t467, t412 * t483 - t416 * t485 + t246 * t488,
-                t412 * t431 - t417 + t246 * t460,
-                t346 * t439 - (t540 * t525 + t544 * t461) + t246 * t533 - t337 * t416,
-                t540 * t485 + t544 * t562 + t346 * t432 + t337 * t412 - t246 * t570, 0.0, 0.0, 0.0,
+                -(joints[2] * t42 + t62), -(joints[2] * t13), t71 - t69, joints[2] * t71, 0.0, 0.0,
+                0.0, 0.0, s4_arm * t115 - t113, c4_arm * t115 - s4_arm * t123,
+                s4_arm * t139 + c4_arm * t136, s4_arm * t150 - c4_arm * t152, t113,
+                -(t182 * t170 + t184 * t139 + c4_arm * t62),
+                t182 * t152 + t184 * t190 + s4_arm * t62, 0.0, 0.0, 0.0, 0.0,
+                t229 * t235 - t238 + c4_arm * t232, c4_arm * t258 - (t235 * t252 + t237 * t244),
+                t235 * t273 - t237 * t270 + c4_arm * t276,
+                t235 * t289 - t237 * t287 + c4_arm * t292, t238 - t235 * t243 + c4_arm * t272,
+                t177 * t237 - c4_arm * t326 - (t333 * t318 + t335 * t273 + t184 * t252),
+                t335 * t347 - t333 * t287 - t184 * t244 + t177 * t235 - c4_arm * t354, 0.0, 0.0,
+                0.0, 0.0, t384 * t401 + t406 - t237 * t396, t405 * t419 - t401 * t428 + t237 * t433,
+                t401 * t450 + t405 * t453 - t237 * t456, t401 * t472 - t405 * t474 + t237 * t477,
+                t401 * t418 - t406 + t237 * t449,
+                t335 * t428 - (t527 * t512 + t531 * t450) + t237 * t520 - t326 * t405,
+                t527 * t474 + t531 * t549 + t335 * t419 + t326 * t401 - t237 * t557, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t23, -t3,
-                -t61, t64, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, t128,
-                t131, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, s5_arm * t329 - c5_arm * t282,
-                s5_arm * t296 + c5_arm * t358, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t423 * t525 + t421 * t461 + c5_arm * t439,
-                c5_arm * t432 - (t423 * t485 + t421 * t562), 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t21, -t5,
+                -t59, t62, joint_accelerations[2], joint_velocities[2],
+                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, t123,
+                t115, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, s5_arm * t318 - c5_arm * t273,
+                s5_arm * t287 + c5_arm * t347, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                t412 * t512 + t410 * t450 + c5_arm * t428,
+                c5_arm * t419 - (t412 * t474 + t410 * t549), 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, -t117, t136, -t149, t155, t145, t186, -t207,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t110, t129, -t142, t148, t138, t177, -t198,
                 joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, -(s5_arm * t238 + t252),
-                s5_arm * t259 - c5_arm * t262, -(s5_arm * t282 + c5_arm * t279),
-                -(s5_arm * t298 + c5_arm * t296), s5_arm * t261 + t252, c5_arm * t186,
-                -(s5_arm * t186), 0.0, 0.0, 0.0, 0.0, t422 - t395 * t423 - c5_arm * t407,
-                t423 * t439 + t421 * t432 + c5_arm * t444,
-                t421 * t464 - t423 * t461 - c5_arm * t467,
-                c5_arm * t488 - (t423 * t483 + t421 * t485), c5_arm * t460 - (t423 * t431 + t422),
-                c5_arm * t533 - t337 * t421, -(t337 * t423 + c5_arm * t570), 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[3]), 1.0, -(t242 + s5_arm * t244),
+                s5_arm * t252 - c5_arm * t244, -(s5_arm * t273 + c5_arm * t270),
+                -(s5_arm * t289 + c5_arm * t287), t242, c5_arm * t177, -(s5_arm * t177), 0.0, 0.0,
+                0.0, 0.0, t411 - t384 * t412 - c5_arm * t396,
+                t412 * t428 + t410 * t419 + c5_arm * t433,
+                t410 * t453 - t412 * t450 - c5_arm * t456,
+                c5_arm * t477 - (t412 * t472 + t410 * t474), c5_arm * t449 - (t412 * t418 + t411),
+                c5_arm * t520 - t326 * t410, -(t326 * t412 + c5_arm * t557), 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t241, t267, t285, t301, t281, -t337, -t365, joint_accelerations[4],
+                t232, t258, t276, t292, t272, -t326, -t354, joint_accelerations[4],
                 joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                s6_arm * t395 + t429, c6_arm * t432 - s6_arm * t439, s6_arm * t461 + c6_arm * t464,
-                s6_arm * t483 - c6_arm * t485, s6_arm * t431 - t429, -(c6_arm * t337),
-                s6_arm * t337, 0.0, 0.0, 0.0, 0.0,
+                t417 + s6_arm * t419, c6_arm * t419 - s6_arm * t428, s6_arm * t450 + c6_arm * t453,
+                s6_arm * t472 - c6_arm * t474, -t417, -(c6_arm * t326), s6_arm * t326, 0.0, 0.0,
+                0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t407, t444, -t467, t488, t460,
-                t533, -t570, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t396, t433, -t456, t477, t449,
+                t520, -t557, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -1151,7 +1152,7 @@ impl Stanford {
     ///
     /// Output: 6 x 6.
     ///
-    /// 678 operations (297 additions, 381 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 666 intermediates.
+    /// 649 operations (287 additions, 362 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 637 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 6], parameters: &[f64; 75]) -> [[f64; 6]; 6] {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
@@ -1293,79 +1294,70 @@ impl Stanford {
             - t138 * t443;
         let t447 = t283 + t322 + t380 + t446;
         let t450 = s5_arm * parameters[54] - c5_arm * parameters[53];
-        let t452 = s5_arm * parameters[55];
-        let t454 = c5_arm * parameters[55];
-        let t463 = t70 * t450 - (t138 * t452 + t149 * t454)
-            - (t133 * (s5_arm * parameters[56]) + t145 * (c5_arm * parameters[56]));
-        let t466 = s5_arm * s6_arm;
-        let t469 = s5_arm * c6_arm;
-        let t478 = c5_arm * parameters[68] - parameters[69] * t466;
-        let t482 = c5_arm * parameters[67] + parameters[69] * t469;
-        let t487 = parameters[67] * t466 + parameters[68] * t469;
-        let t490 = t213 * (parameters[70] * t466) - t201 * (parameters[70] * t469)
-            - t145 * (c5_arm * parameters[70]) + t218 * t478 - t204 * t482 - t138 * t487;
-        let t491 = t463 - (t43 + t92) + t490;
-        let t499 = s5_arm * parameters[47] + c5_arm * parameters[48];
-        let t503 = s5_arm * parameters[48] + c5_arm * parameters[50];
-        let t508 = s5_arm * parameters[49] + c5_arm * parameters[51];
-        let t511 = t145 * t452 - t133 * t454 - t79 * t450 + t149 * t499 - t138 * t503
-            - t70 * t508;
-        let t522 = parameters[62] * t466 - parameters[61] * t469
+        let t460 = s5_arm * s6_arm;
+        let t462 = c5_arm * parameters[68] - parameters[69] * t460;
+        let t465 = s5_arm * c6_arm;
+        let t467 = c5_arm * parameters[67] + parameters[69] * t465;
+        let t472 = parameters[67] * t460 + parameters[68] * t465;
+        let t476 = t70 * t450 - t81 * parameters[55] - t8 * parameters[56] - (t43 + t92)
+            + t218 * t462 - t204 * t467 - t138 * t472 - t8 * parameters[70];
+        let t482 = s5_arm * parameters[47] + c5_arm * parameters[48];
+        let t486 = s5_arm * parameters[48] + c5_arm * parameters[50];
+        let t491 = s5_arm * parameters[49] + c5_arm * parameters[51];
+        let t495 = t124 + t149 * t482 - t138 * t486 - t70 * t491
+            - (t69 * parameters[55] + t79 * t450);
+        let t505 = parameters[62] * t460 - parameters[61] * t465
             + c5_arm * parameters[63];
-        let t528 = parameters[64] * t466 - parameters[62] * t469
+        let t511 = parameters[64] * t460 - parameters[62] * t465
             + c5_arm * parameters[65];
-        let t535 = parameters[65] * t466 - parameters[63] * t469
+        let t518 = parameters[65] * t460 - parameters[63] * t465
             + c5_arm * parameters[66];
-        let t538 = t213 * t482 - t201 * t478 + t145 * t487 + t218 * t522 + t204 * t528
-            - t138 * t535;
-        let t539 = t124 + t511 + t538;
-        let t540 = c6_arm * parameters[69];
-        let t542 = s6_arm * parameters[69];
-        let t547 = s6_arm * parameters[68] - c6_arm * parameters[67];
-        let t552 = s6_arm * parameters[61] + c6_arm * parameters[62];
-        let t556 = s6_arm * parameters[62] + c6_arm * parameters[64];
-        let t561 = s6_arm * parameters[63] + c6_arm * parameters[65];
-        let t564 = t201 * t540 - t213 * t542 - t145 * t547 + t218 * t552 + t204 * t556
-            - t138 * t561;
-        let t565 = t192 + t564;
-        let t579 = parameters[10] + parameters[15] + joints[2] * t274 + parameters[22]
+        let t521 = t213 * t467 - t201 * t462 + t145 * t472 + t218 * t505 + t204 * t511
+            - t138 * t518;
+        let t522 = t495 + t521;
+        let t526 = s6_arm * parameters[68] - c6_arm * parameters[67];
+        let t531 = s6_arm * parameters[61] + c6_arm * parameters[62];
+        let t535 = s6_arm * parameters[62] + c6_arm * parameters[64];
+        let t540 = s6_arm * parameters[63] + c6_arm * parameters[65];
+        let t544 = t192 + t133 * parameters[69] - t145 * t526 + t218 * t531 + t204 * t535
+            - t138 * t540;
+        let t558 = parameters[10] + parameters[15] + joints[2] * t274 + parameters[22]
             + joints[2] * parameters[27] + t285 * t287 + t290 * t292 + s4_arm * t310
             + c4_arm * t304;
-        let t590 = t324 * t330 - t336 * t338 - t290 * t345 + t333 * t366 - t327 * t356
+        let t569 = t324 * t330 - t336 * t338 - t290 * t345 + t333 * t366 - t327 * t356
             + c4_arm * t377;
-        let t602 = t390 * t392 - t402 * t404 + t336 * t411 + t397 * t422 + t384 * t432
+        let t581 = t390 * t392 - t402 * t404 + t336 * t411 + t397 * t422 + t384 * t432
             + t327 * t443;
-        let t616 = t297 - parameters[25] + t333 * t454 + t327 * t452 + c4_arm * t450
-            + t397 * t478 - t384 * t482 + t327 * t487;
-        let t627 = t290 * t450 - (t324 * t454 + t336 * t452) + t327 * t503 - t333 * t499
-            - c4_arm * t508;
-        let t639 = t397 * t522 + t384 * t528 + t327 * t535
-            - (t390 * t478 + t402 * t482 + t336 * t487);
-        let t640 = t319 + t627 + t639;
-        let t651 = t390 * t540 + t402 * t542 + t336 * t547 + t397 * t552 + t384 * t556
-            + t327 * t561;
-        let t652 = t377 + t651;
-        let t662 = t450 + c5_arm * t547 - (t466 * t542 + t469 * t540);
-        let t673 = parameters[38] + parameters[43] + s5_arm * t499 + c5_arm * t503
-            + t466 * t528 - t469 * t522 + c5_arm * t535;
-        let t679 = t466 * t556 - t469 * t552 + c5_arm * t561 - t508;
+        let t593 = t297 - parameters[25] + s4_arm * parameters[55] + c4_arm * t450
+            + t397 * t462 - t384 * t467 + t327 * t472;
+        let t603 = t319 + t290 * t450 - parameters[55] * t285 + t327 * t486 - t333 * t482
+            - c4_arm * t491;
+        let t614 = t397 * t505 + t384 * t511 + t327 * t518
+            - (t390 * t462 + t402 * t467 + t336 * t472);
+        let t615 = t603 + t614;
+        let t625 = t377 + parameters[69] * t324 + t336 * t526 + t397 * t531 + t384 * t535
+            + t327 * t540;
+        let t633 = t450 + c5_arm * t526 - s5_arm * parameters[69];
+        let t644 = parameters[38] + parameters[43] + s5_arm * t482 + c5_arm * t486
+            + t460 * t511 - t465 * t505 + c5_arm * t518;
+        let t650 = t460 * t535 - t465 * t531 + c5_arm * t540 - t491;
         [
-            [t128 + t195 + t263, t447, t491, t539, t565, t260],
-            [t447, t579 + t590 + t602, t616, t640, t652, t443],
+            [t128 + t195 + t263, t447, t476, t522, t544, t260],
+            [t447, t558 + t569 + t581, t593, t615, t625, t443],
             [
-                t491, t616,
+                t476, t593,
                 parameters[28] + parameters[29] + parameters[42] + parameters[56]
                     + parameters[70],
                 0.0,
-                t662,
-                t487,
+                t633,
+                t472,
             ],
-            [t539, t640, 0.0, t673, t679, t535],
+            [t522, t615, 0.0, t644, t650, t518],
             [
-                t565, t652, t662, t679,
-                parameters[52] + parameters[57] + s6_arm * t552 + c6_arm * t556, t561,
+                t544, t625, t633, t650,
+                parameters[52] + parameters[57] + s6_arm * t531 + c6_arm * t535, t540,
             ],
-            [t260, t443, t487, t535, t561, parameters[66] + parameters[71]],
+            [t260, t443, t472, t518, t540, parameters[66] + parameters[71]],
         ]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.

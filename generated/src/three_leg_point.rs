@@ -166,7 +166,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 95 operations (41 additions, 51 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 101 intermediates.
+    /// 94 operations (41 additions, 50 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 100 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -180,31 +180,29 @@ impl ThreeLegPoint {
         let t13 = 0.5 * t1 - pose[0] * t7;
         let t22 = t4 * t7;
         let t24 = t4 - 0.1152;
-        let t32 = pose[0] + 0.3031088913245535;
+        let t32 = pose[0] - 0.3031088913245535;
         let t34 = pose[1] + 0.175;
-        let t35 = 0.8660254037844386 * t34;
-        let t36 = 0.5 * t32 - t35;
-        let t39 = 0.5 * t34;
-        let t40 = 0.8660254037844386 * t32 + t39;
-        let t43 = t40 * t40 + t36 * t36;
-        let t45 = 0.0576 / t43 - 0.25;
-        ::overact::guard::reach(t45, "leg2")?;
-        let t46 = ::overact::math::sqrt(t45);
-        let t48 = 0.5 * t36 + t40 * t46;
-        let t52 = t36 * t46 - 0.5 * t40;
-        let t61 = t43 * t46;
-        let t63 = t43 - 0.1152;
-        let t71 = pose[0] - 0.3031088913245535;
-        let t73 = 0.5 * t71 + t35;
-        let t76 = 0.8660254037844386 * t71 - t39;
-        let t79 = t76 * t76 + t73 * t73;
-        let t81 = 0.0576 / t79 - 0.25;
-        ::overact::guard::reach(t81, "leg3")?;
-        let t82 = ::overact::math::sqrt(t81);
-        let t84 = 0.5 * t73 - t76 * t82;
-        let t88 = 0.5 * t76 + t73 * t82;
-        let t97 = t79 * t82;
-        let t99 = t79 - 0.1152;
+        let t36 = 0.5 * t32 + 0.8660254037844386 * t34;
+        let t37 = pose[0] - t36;
+        let t41 = 0.5 * t34;
+        let t42 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t41;
+        let t45 = t42 * t42 + t37 * t37;
+        let t47 = 0.0576 / t45 - 0.25;
+        ::overact::guard::reach(t47, "leg2")?;
+        let t48 = ::overact::math::sqrt(t47);
+        let t50 = 0.5 * t37 + t42 * t48;
+        let t54 = t37 * t48 - 0.5 * t42;
+        let t63 = t45 * t48;
+        let t65 = t45 - 0.1152;
+        let t75 = 0.8660254037844386 * t32 - t41;
+        let t78 = t75 * t75 + t36 * t36;
+        let t80 = 0.0576 / t78 - 0.25;
+        ::overact::guard::reach(t80, "leg3")?;
+        let t81 = ::overact::math::sqrt(t80);
+        let t83 = 0.5 * t36 - t75 * t81;
+        let t87 = 0.5 * t75 + t36 * t81;
+        let t96 = t78 * t81;
+        let t98 = t78 - 0.1152;
         Ok([
             ::overact::math::atan2(
                 3.0381944443178988 * t9 - 2.8514006434780375 * t13,
@@ -215,20 +213,20 @@ impl ThreeLegPoint {
                 0.5500699260060067 * t24 + 17.32621918706908 * t22,
             ) + 1.5073857853212624,
             ::overact::math::atan2(
-                -(3.0381944443178965 * t48 + 2.8514006434780397 * t52),
-                2.8514006434780397 * t48 - 3.0381944443178965 * t52,
+                -(3.0381944443178965 * t50 + 2.8514006434780397 * t54),
+                2.8514006434780397 * t50 - 3.0381944443178965 * t54,
             ) + 2.387899760924693,
             ::overact::math::atan2(
-                1.1001398520120056 * t61 - 8.66310959353454 * t63,
-                0.5500699260060028 * t63 + 17.32621918706908 * t61,
+                1.1001398520120056 * t63 - 8.66310959353454 * t65,
+                0.5500699260060028 * t65 + 17.32621918706908 * t63,
             ) + 1.5073857853212629,
             ::overact::math::atan2(
-                -(3.038194444317904 * t84 + 2.851400643478032 * t88),
-                2.851400643478032 * t84 - 3.038194444317904 * t88,
+                -(3.038194444317904 * t83 + 2.851400643478032 * t87),
+                2.851400643478032 * t83 - 3.038194444317904 * t87,
             ) + 2.3878997609246957,
             ::overact::math::atan2(
-                1.1001398520120442 * t97 - 8.663109593534537 * t99,
-                0.5500699260060221 * t99 + 17.326219187069075 * t97,
+                1.1001398520120442 * t96 - 8.663109593534537 * t98,
+                0.5500699260060221 * t98 + 17.326219187069075 * t96,
             ) + 1.5073857853212607,
         ])
     }
@@ -239,7 +237,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 68 operations (29 additions, 36 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 74 intermediates.
+    /// 67 operations (29 additions, 35 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 73 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -250,37 +248,35 @@ impl ThreeLegPoint {
         let t7 = ::overact::math::sqrt(t6);
         let t9 = 0.5 * pose[0] + t1 * t7;
         let t13 = 0.5 * t1 - pose[0] * t7;
-        let t22 = pose[0] + 0.3031088913245535;
+        let t22 = pose[0] - 0.3031088913245535;
         let t24 = pose[1] + 0.175;
-        let t25 = 0.8660254037844386 * t24;
-        let t26 = 0.5 * t22 - t25;
-        let t29 = 0.5 * t24;
-        let t30 = 0.8660254037844386 * t22 + t29;
-        let t35 = 0.0576 / (t30 * t30 + t26 * t26) - 0.25;
-        ::overact::guard::reach(t35, "leg2")?;
-        let t36 = ::overact::math::sqrt(t35);
-        let t38 = 0.5 * t26 + t30 * t36;
-        let t42 = t26 * t36 - 0.5 * t30;
-        let t51 = pose[0] - 0.3031088913245535;
-        let t53 = 0.5 * t51 + t25;
-        let t56 = 0.8660254037844386 * t51 - t29;
-        let t61 = 0.0576 / (t56 * t56 + t53 * t53) - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = 0.5 * t53 - t56 * t62;
-        let t68 = 0.5 * t56 + t53 * t62;
+        let t26 = 0.5 * t22 + 0.8660254037844386 * t24;
+        let t27 = pose[0] - t26;
+        let t31 = 0.5 * t24;
+        let t32 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t31;
+        let t37 = 0.0576 / (t32 * t32 + t27 * t27) - 0.25;
+        ::overact::guard::reach(t37, "leg2")?;
+        let t38 = ::overact::math::sqrt(t37);
+        let t40 = 0.5 * t27 + t32 * t38;
+        let t44 = t27 * t38 - 0.5 * t32;
+        let t55 = 0.8660254037844386 * t22 - t31;
+        let t60 = 0.0576 / (t55 * t55 + t26 * t26) - 0.25;
+        ::overact::guard::reach(t60, "leg3")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = 0.5 * t26 - t55 * t61;
+        let t67 = 0.5 * t55 + t26 * t61;
         Ok([
             ::overact::math::atan2(
                 3.0381944443178988 * t9 - 2.8514006434780375 * t13,
                 -(3.0381944443178988 * t13 + 2.8514006434780375 * t9),
             ) + 2.387899760924694,
             ::overact::math::atan2(
-                -(3.0381944443178965 * t38 + 2.8514006434780397 * t42),
-                2.8514006434780397 * t38 - 3.0381944443178965 * t42,
+                -(3.0381944443178965 * t40 + 2.8514006434780397 * t44),
+                2.8514006434780397 * t40 - 3.0381944443178965 * t44,
             ) + 2.387899760924693,
             ::overact::math::atan2(
-                -(3.038194444317904 * t64 + 2.851400643478032 * t68),
-                2.851400643478032 * t64 - 3.038194444317904 * t68,
+                -(3.038194444317904 * t63 + 2.851400643478032 * t67),
+                2.851400643478032 * t63 - 3.038194444317904 * t67,
             ) + 2.3878997609246957,
         ])
     }
@@ -291,7 +287,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 2.
     ///
-    /// 77 operations (30 additions, 41 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 74 intermediates.
+    /// 70 operations (24 additions, 40 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 67 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -301,44 +297,42 @@ impl ThreeLegPoint {
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t1 * t7 - pose[0]) * t12;
-        let t14 = pose[0] + 0.3031088913245535;
-        let t16 = pose[1] + 0.175;
-        let t17 = 0.5 * t16;
-        let t18 = 0.8660254037844386 * t14 + t17;
-        let t20 = 0.8660254037844386 * t16;
-        let t21 = 0.5 * t14 - t20;
-        let t24 = t18 * t18 + t21 * t21;
-        let t26 = 0.0576 / t24 - 0.25;
-        ::overact::guard::reach(t26, "leg2")?;
-        let t27 = ::overact::math::sqrt(t26);
-        let t31 = t18 + t21 * t27 - 0.5 * t18;
-        let t36 = t21 - (0.5 * t21 + t18 * t27);
-        let t39 = t24 * t27;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg2")?;
-        let t40 = 0.24 / t39;
-        let g1_vx_leg2 = (3.608439182435161 * t31 + 2.0833333333333335 * t36) * t40;
-        let t42 = pose[0] - 0.3031088913245535;
-        let t44 = 0.8660254037844386 * t42 - t17;
-        let t47 = 0.5 * t42 + t20;
-        let t50 = t44 * t44 + t47 * t47;
-        let t52 = 0.0576 / t50 - 0.25;
-        ::overact::guard::reach(t52, "leg3")?;
-        let t53 = ::overact::math::sqrt(t52);
-        let t56 = t44 - (0.5 * t44 + t47 * t53);
-        let t61 = t47 - (0.5 * t47 - t44 * t53);
-        let t64 = t50 * t53;
-        ::overact::guard::leg(t64, 0.05748423696979895, "leg3")?;
-        let t65 = 0.24 / t64;
-        let g1_vx_leg3 = (3.608439182435161 * t56 + 2.0833333333333335 * t61) * t65;
-        let g1_vy_leg1 = (t1 - (0.5 * t1 - pose[0] * t7)) * t12;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t36 - 2.0833333333333335 * t31)
-            * t40;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t56 - 3.608439182435161 * t61)
-            * t65;
+        let t10 = t4 * t7;
+        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
+        let t11 = 1.0 / t10;
+        let minus_g1_vx_leg1 = (t1 * t7 - 0.5 * pose[0]) * t11;
+        let t13 = pose[0] - 0.3031088913245535;
+        let t15 = pose[1] + 0.175;
+        let t17 = 0.5 * t13 + 0.8660254037844386 * t15;
+        let t18 = pose[0] - t17;
+        let t21 = 0.5 * t15;
+        let t22 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t21;
+        let t25 = t22 * t22 + t18 * t18;
+        let t27 = 0.0576 / t25 - 0.25;
+        ::overact::guard::reach(t27, "leg2")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t31 = t18 * t28 + 0.5 * t22;
+        let t35 = 0.5 * t18 - t22 * t28;
+        let t38 = t25 * t28;
+        ::overact::guard::leg(t38, 0.05748423696979895, "leg2")?;
+        let t39 = 0.24 / t38;
+        let g1_vx_leg2 = (3.608439182435161 * t31 + 2.0833333333333335 * t35) * t39;
+        let t42 = 0.8660254037844386 * t13 - t21;
+        let t46 = t42 * t42 + t17 * t17;
+        let t48 = 0.0576 / t46 - 0.25;
+        ::overact::guard::reach(t48, "leg3")?;
+        let t49 = ::overact::math::sqrt(t48);
+        let t51 = 0.5 * t42 - t17 * t49;
+        let t55 = 0.5 * t17 + t42 * t49;
+        let t58 = t46 * t49;
+        ::overact::guard::leg(t58, 0.05748423696979895, "leg3")?;
+        let t59 = 0.24 / t58;
+        let g1_vx_leg3 = (3.608439182435161 * t51 + 2.0833333333333335 * t55) * t59;
+        let g1_vy_leg1 = (0.5 * t1 + pose[0] * t7) * t11;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t35 - 2.0833333333333335 * t31)
+            * t39;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t51 - 3.608439182435161 * t55)
+            * t59;
         Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
@@ -391,7 +385,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 3.
     ///
-    /// 115 operations (43 additions, 64 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 112 intermediates.
+    /// 108 operations (37 additions, 63 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 105 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -401,64 +395,62 @@ impl ThreeLegPoint {
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t1 * t7 - pose[0]) * t12;
-        let g1_vy_leg1 = (t1 - (0.5 * t1 - pose[0] * t7)) * t12;
-        let t20 = pose[0] + 0.3031088913245535;
-        let t22 = pose[1] + 0.175;
-        let t23 = 0.5 * t22;
-        let t24 = 0.8660254037844386 * t20 + t23;
-        let t26 = 0.8660254037844386 * t22;
-        let t27 = 0.5 * t20 - t26;
-        let t30 = t24 * t24 + t27 * t27;
+        let t10 = t4 * t7;
+        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
+        let t11 = 1.0 / t10;
+        let minus_g1_vx_leg1 = (t1 * t7 - 0.5 * pose[0]) * t11;
+        let g1_vy_leg1 = (0.5 * t1 + pose[0] * t7) * t11;
+        let t18 = pose[0] - 0.3031088913245535;
+        let t20 = pose[1] + 0.175;
+        let t22 = 0.5 * t18 + 0.8660254037844386 * t20;
+        let t23 = pose[0] - t22;
+        let t26 = 0.5 * t20;
+        let t27 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t26;
+        let t30 = t27 * t27 + t23 * t23;
         let t32 = 0.0576 / t30 - 0.25;
         ::overact::guard::reach(t32, "leg2")?;
         let t33 = ::overact::math::sqrt(t32);
-        let t37 = t24 + t27 * t33 - 0.5 * t24;
-        let t42 = t27 - (0.5 * t27 + t24 * t33);
-        let t45 = t30 * t33;
-        ::overact::guard::leg(t45, 0.05748423696979895, "leg2")?;
-        let t46 = 0.24 / t45;
-        let g1_vx_leg2 = (3.608439182435161 * t37 + 2.0833333333333335 * t42) * t46;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t42 - 2.0833333333333335 * t37)
-            * t46;
-        let t54 = pose[0] - 0.3031088913245535;
-        let t56 = 0.8660254037844386 * t54 - t23;
-        let t59 = 0.5 * t54 + t26;
-        let t62 = t56 * t56 + t59 * t59;
-        let t64 = 0.0576 / t62 - 0.25;
-        ::overact::guard::reach(t64, "leg3")?;
-        let t65 = ::overact::math::sqrt(t64);
-        let t68 = t56 - (0.5 * t56 + t59 * t65);
-        let t73 = t59 - (0.5 * t59 - t56 * t65);
-        let t76 = t62 * t65;
-        ::overact::guard::leg(t76, 0.05748423696979895, "leg3")?;
-        let t77 = 0.24 / t76;
-        let g1_vx_leg3 = (3.608439182435161 * t68 + 2.0833333333333335 * t73) * t77;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t68 - 3.608439182435161 * t73)
-            * t77;
-        let t84 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t36 = t23 * t33 + 0.5 * t27;
+        let t40 = 0.5 * t23 - t27 * t33;
+        let t43 = t30 * t33;
+        ::overact::guard::leg(t43, 0.05748423696979895, "leg2")?;
+        let t44 = 0.24 / t43;
+        let g1_vx_leg2 = (3.608439182435161 * t36 + 2.0833333333333335 * t40) * t44;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t40 - 2.0833333333333335 * t36)
+            * t44;
+        let t53 = 0.8660254037844386 * t18 - t26;
+        let t57 = t53 * t53 + t22 * t22;
+        let t59 = 0.0576 / t57 - 0.25;
+        ::overact::guard::reach(t59, "leg3")?;
+        let t60 = ::overact::math::sqrt(t59);
+        let t62 = 0.5 * t53 - t22 * t60;
+        let t66 = 0.5 * t22 + t53 * t60;
+        let t69 = t57 * t60;
+        ::overact::guard::leg(t69, 0.05748423696979895, "leg3")?;
+        let t70 = 0.24 / t69;
+        let g1_vx_leg3 = (3.608439182435161 * t62 + 2.0833333333333335 * t66) * t70;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t62 - 3.608439182435161 * t66)
+            * t70;
+        let t77 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t89 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t82 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t89, 26.146658848896372, "actuators")?;
-        let t90 = 1.0 / t89;
-        let t91 = t84 * t90;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t84 * t91;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t102 = t99 * (g1_vy_leg1 - minus_g1_vx_leg1 * t91);
-        let t109 = t99 * (g1_vx_leg2 * t91 - minus_g1_vy_leg2);
-        let t115 = t99 * (g1_vx_leg3 * t91 - minus_g1_vy_leg3);
+        ::overact::guard::platform(t82, 26.146658848896372, "actuators")?;
+        let t83 = 1.0 / t82;
+        let t84 = t77 * t83;
+        let t91 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t77 * t84;
+        ::overact::guard::platform(t91, 26.146658848896372, "actuators")?;
+        let t92 = 1.0 / t91;
+        let t95 = t92 * (g1_vy_leg1 - minus_g1_vx_leg1 * t84);
+        let t102 = t92 * (g1_vx_leg2 * t84 - minus_g1_vy_leg2);
+        let t108 = t92 * (g1_vx_leg3 * t84 - minus_g1_vy_leg3);
         Ok([
             [
-                t91 * t102 - minus_g1_vx_leg1 * t90, g1_vx_leg2 * t90 + t91 * t109,
-                g1_vx_leg3 * t90 + t91 * t115,
+                t84 * t95 - minus_g1_vx_leg1 * t83, g1_vx_leg2 * t83 + t84 * t102,
+                g1_vx_leg3 * t83 + t84 * t108,
             ],
-            [t102, t109, t115],
+            [t95, t102, t108],
         ])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -585,7 +577,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 116 operations (43 additions, 67 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 113 intermediates.
+    /// 115 operations (43 additions, 66 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 112 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -610,52 +602,50 @@ impl ThreeLegPoint {
         let minus_g2_vy_leg1 = t9 * t12;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t28 = pose[0] + 0.3031088913245535;
         let t30 = pose[1] + 0.175;
         let t31 = 0.5 * t30;
-        let t32 = 0.8660254037844386 * t28 + t31;
-        let t34 = 0.8660254037844386 * t30;
-        let t35 = 0.5 * t28 - t34;
-        let t38 = t32 * t32 + t35 * t35;
-        let t40 = 0.0576 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg2")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t44 = t35 * t41 - 0.5 * t32;
-        let t45 = t32 + t44;
-        let t49 = 0.5 * t35 + t32 * t41;
-        let t50 = t35 - t49;
-        let t53 = t38 * t41;
-        ::overact::guard::leg(t53, 0.05748423696979895, "leg2")?;
-        let t54 = 0.24 / t53;
-        let g1_vx_leg2 = (3.608439182435161 * t45 + 2.0833333333333335 * t50) * t54;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t50 - 2.0833333333333335 * t45)
-            * t54;
+        let t32 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t31;
+        let t33 = pose[0] - 0.3031088913245535;
+        let t36 = 0.5 * t33 + 0.8660254037844386 * t30;
+        let t37 = pose[0] - t36;
+        let t40 = t32 * t32 + t37 * t37;
+        let t42 = 0.0576 / t40 - 0.25;
+        ::overact::guard::reach(t42, "leg2")?;
+        let t43 = ::overact::math::sqrt(t42);
+        let t46 = t37 * t43 - 0.5 * t32;
+        let t47 = t32 + t46;
+        let t51 = 0.5 * t37 + t32 * t43;
+        let t52 = t37 - t51;
+        let t55 = t40 * t43;
+        ::overact::guard::leg(t55, 0.05748423696979895, "leg2")?;
+        let t56 = 0.24 / t55;
+        let g1_vx_leg2 = (3.608439182435161 * t47 + 2.0833333333333335 * t52) * t56;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t52 - 2.0833333333333335 * t47)
+            * t56;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let g2_vy_leg2 = (3.608439182435161 * t49 + 2.0833333333333335 * t44) * t54;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t49 - 3.608439182435161 * t44)
-            * t54;
+        let g2_vy_leg2 = (3.608439182435161 * t51 + 2.0833333333333335 * t46) * t56;
+        let minus_g2_vx_leg2 = (2.0833333333333335 * t51 - 3.608439182435161 * t46)
+            * t56;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t75 = pose[0] - 0.3031088913245535;
-        let t77 = 0.8660254037844386 * t75 - t31;
-        let t80 = 0.5 * t75 + t34;
-        let t83 = t77 * t77 + t80 * t80;
-        let t85 = 0.0576 / t83 - 0.25;
-        ::overact::guard::reach(t85, "leg3")?;
-        let t86 = ::overact::math::sqrt(t85);
-        let t88 = 0.5 * t77 + t80 * t86;
-        let t89 = t77 - t88;
-        let t93 = 0.5 * t80 - t77 * t86;
-        let t94 = t80 - t93;
-        let t97 = t83 * t86;
-        ::overact::guard::leg(t97, 0.05748423696979895, "leg3")?;
-        let t98 = 0.24 / t97;
-        let g1_vx_leg3 = (3.608439182435161 * t89 + 2.0833333333333335 * t94) * t98;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t89 - 3.608439182435161 * t94)
-            * t98;
+        let t78 = 0.8660254037844386 * t33 - t31;
+        let t82 = t78 * t78 + t36 * t36;
+        let t84 = 0.0576 / t82 - 0.25;
+        ::overact::guard::reach(t84, "leg3")?;
+        let t85 = ::overact::math::sqrt(t84);
+        let t87 = 0.5 * t78 + t36 * t85;
+        let t88 = t78 - t87;
+        let t92 = 0.5 * t36 - t78 * t85;
+        let t93 = t36 - t92;
+        let t96 = t82 * t85;
+        ::overact::guard::leg(t96, 0.05748423696979895, "leg3")?;
+        let t97 = 0.24 / t96;
+        let g1_vx_leg3 = (3.608439182435161 * t88 + 2.0833333333333335 * t93) * t97;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t88 - 3.608439182435161 * t93)
+            * t97;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let g2_vy_leg3 = (2.0833333333333335 * t88 - 3.608439182435161 * t93) * t98;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t88 + 2.0833333333333335 * t93)
-            * t98;
+        let g2_vy_leg3 = (2.0833333333333335 * t87 - 3.608439182435161 * t92) * t97;
+        let minus_g2_vx_leg3 = (3.608439182435161 * t87 + 2.0833333333333335 * t92)
+            * t97;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
         Ok([
             rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), rate_1_leg2, rate_2_leg2 - rate_1_leg2,
@@ -671,7 +661,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 6.
     ///
-    /// 176 operations (64 additions, 106 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 173 intermediates.
+    /// 175 operations (64 additions, 105 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 172 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -706,73 +696,71 @@ impl ThreeLegPoint {
             * (t12 * acceleration[0] - t17 * acceleration[1] - 0.0576 * t25 - t33 * t35);
         let minus_rate_dot_2_leg1 = t8
             * (t11 * acceleration[0] + t16 * acceleration[1] + 0.0576 * t33 + t25 * t35);
-        let t48 = pose[0] + 0.3031088913245535;
         let t50 = pose[1] + 0.175;
         let t51 = 0.5 * t50;
-        let t52 = 0.8660254037844386 * t48 + t51;
-        let t55 = 0.8660254037844386 * t50;
-        let t56 = 0.5 * t48 - t55;
-        let t58 = t52 * t52 + t56 * t56;
-        let t60 = 0.0576 / t58 - 0.25;
-        ::overact::guard::reach(t60, "leg2")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t62 = t58 * t61;
-        ::overact::guard::leg(t62, 0.05748423696979895, "leg2")?;
-        let t63 = 0.24 / t62;
-        let t66 = 0.5 * t56 + t52 * t61;
-        let t67 = t56 - t66;
-        let t71 = t56 * t61 - 0.5 * t52;
-        let t72 = t52 + t71;
-        let t74 = 3.608439182435161 * t67 - 2.0833333333333335 * t72;
-        let t78 = 3.608439182435161 * t72 + 2.0833333333333335 * t67;
-        let t83 = 3.608439182435161 * t66 + 2.0833333333333335 * t71;
-        let g2_vy_leg2 = t83 * t63;
-        let t88 = 2.0833333333333335 * t66 - 3.608439182435161 * t71;
-        let minus_g2_vx_leg2 = t88 * t63;
+        let t52 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t51;
+        let t54 = pose[0] - 0.3031088913245535;
+        let t57 = 0.5 * t54 + 0.8660254037844386 * t50;
+        let t58 = pose[0] - t57;
+        let t60 = t52 * t52 + t58 * t58;
+        let t62 = 0.0576 / t60 - 0.25;
+        ::overact::guard::reach(t62, "leg2")?;
+        let t63 = ::overact::math::sqrt(t62);
+        let t64 = t60 * t63;
+        ::overact::guard::leg(t64, 0.05748423696979895, "leg2")?;
+        let t65 = 0.24 / t64;
+        let t68 = 0.5 * t58 + t52 * t63;
+        let t69 = t58 - t68;
+        let t73 = t58 * t63 - 0.5 * t52;
+        let t74 = t52 + t73;
+        let t76 = 3.608439182435161 * t69 - 2.0833333333333335 * t74;
+        let t80 = 3.608439182435161 * t74 + 2.0833333333333335 * t69;
+        let t85 = 3.608439182435161 * t68 + 2.0833333333333335 * t73;
+        let g2_vy_leg2 = t85 * t65;
+        let t90 = 2.0833333333333335 * t68 - 3.608439182435161 * t73;
+        let minus_g2_vx_leg2 = t90 * t65;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t92 = rate_2_leg2 * rate_2_leg2;
-        let g1_vx_leg2 = t78 * t63;
-        let minus_g1_vy_leg2 = t74 * t63;
+        let t94 = rate_2_leg2 * rate_2_leg2;
+        let g1_vx_leg2 = t80 * t65;
+        let minus_g1_vy_leg2 = t76 * t65;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t100 = rate_1_leg2 * rate_1_leg2;
-        let t102 = 2.0833333333333335 * (t58 - 0.1152);
-        let minus_rate_dot_1_leg2 = t63
-            * (t74 * acceleration[1] - t78 * acceleration[0] - 0.24 * t92 - t100 * t102);
-        let minus_rate_dot_2_leg2 = t63
-            * (t88 * acceleration[0] - t83 * acceleration[1] + 0.24 * t100 + t92 * t102);
-        let t115 = pose[0] - 0.3031088913245535;
-        let t117 = 0.8660254037844386 * t115 - t51;
-        let t120 = 0.5 * t115 + t55;
-        let t122 = t117 * t117 + t120 * t120;
-        let t124 = 0.0576 / t122 - 0.25;
-        ::overact::guard::reach(t124, "leg3")?;
-        let t125 = ::overact::math::sqrt(t124);
-        let t126 = t122 * t125;
-        ::overact::guard::leg(t126, 0.05748423696979895, "leg3")?;
-        let t127 = 0.24 / t126;
-        let t130 = 0.5 * t117 + t120 * t125;
-        let t131 = t117 - t130;
-        let t135 = 0.5 * t120 - t117 * t125;
-        let t136 = t120 - t135;
-        let t138 = 3.608439182435161 * t131 + 2.0833333333333335 * t136;
-        let t142 = 2.0833333333333335 * t131 - 3.608439182435161 * t136;
-        let t147 = 2.0833333333333335 * t130 - 3.608439182435161 * t135;
-        let g2_vy_leg3 = t147 * t127;
-        let t152 = 3.608439182435161 * t130 + 2.0833333333333335 * t135;
-        let minus_g2_vx_leg3 = t152 * t127;
+        let t102 = rate_1_leg2 * rate_1_leg2;
+        let t104 = 2.0833333333333335 * (t60 - 0.1152);
+        let minus_rate_dot_1_leg2 = t65
+            * (t76 * acceleration[1] - t80 * acceleration[0] - 0.24 * t94 - t102 * t104);
+        let minus_rate_dot_2_leg2 = t65
+            * (t90 * acceleration[0] - t85 * acceleration[1] + 0.24 * t102 + t94 * t104);
+        let t118 = 0.8660254037844386 * t54 - t51;
+        let t121 = t118 * t118 + t57 * t57;
+        let t123 = 0.0576 / t121 - 0.25;
+        ::overact::guard::reach(t123, "leg3")?;
+        let t124 = ::overact::math::sqrt(t123);
+        let t125 = t121 * t124;
+        ::overact::guard::leg(t125, 0.05748423696979895, "leg3")?;
+        let t126 = 0.24 / t125;
+        let t129 = 0.5 * t118 + t57 * t124;
+        let t130 = t118 - t129;
+        let t134 = 0.5 * t57 - t118 * t124;
+        let t135 = t57 - t134;
+        let t137 = 3.608439182435161 * t130 + 2.0833333333333335 * t135;
+        let t141 = 2.0833333333333335 * t130 - 3.608439182435161 * t135;
+        let t146 = 2.0833333333333335 * t129 - 3.608439182435161 * t134;
+        let g2_vy_leg3 = t146 * t126;
+        let t151 = 3.608439182435161 * t129 + 2.0833333333333335 * t134;
+        let minus_g2_vx_leg3 = t151 * t126;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t156 = rate_2_leg3 * rate_2_leg3;
-        let g1_vx_leg3 = t138 * t127;
-        let minus_g1_vy_leg3 = t142 * t127;
+        let t155 = rate_2_leg3 * rate_2_leg3;
+        let g1_vx_leg3 = t137 * t126;
+        let minus_g1_vy_leg3 = t141 * t126;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t164 = rate_1_leg3 * rate_1_leg3;
-        let t166 = 2.0833333333333335 * (t122 - 0.1152);
-        let rate_dot_1_leg3 = t127
-            * (t138 * acceleration[0] - t142 * acceleration[1] + 0.24 * t156
-                + t164 * t166);
-        let rate_dot_2_leg3 = t127
-            * (t147 * acceleration[1] - t152 * acceleration[0] - 0.24 * t164
-                - t156 * t166);
+        let t163 = rate_1_leg3 * rate_1_leg3;
+        let t165 = 2.0833333333333335 * (t121 - 0.1152);
+        let rate_dot_1_leg3 = t126
+            * (t137 * acceleration[0] - t141 * acceleration[1] + 0.24 * t155
+                + t163 * t165);
+        let rate_dot_2_leg3 = t126
+            * (t146 * acceleration[1] - t151 * acceleration[0] - 0.24 * t163
+                - t155 * t165);
         Ok([
             -minus_rate_dot_1_leg1, minus_rate_dot_1_leg1 - minus_rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, minus_rate_dot_1_leg2 - minus_rate_dot_2_leg2, rate_dot_1_leg3,
@@ -787,7 +775,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 112 operations (43 additions, 61 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 113 intermediates.
+    /// 105 operations (37 additions, 60 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 106 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -795,66 +783,64 @@ impl ThreeLegPoint {
         pose: &[f64; 2],
         actuator_velocities: &[f64; 3],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.3031088913245535;
+        let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 + t3;
-        let t6 = 0.8660254037844386 * t2;
-        let t7 = 0.5 * t0 - t6;
-        let t10 = t4 * t4 + t7 * t7;
-        let t12 = 0.0576 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg2")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t17 = t4 + t7 * t13 - 0.5 * t4;
-        let t22 = t7 - (0.5 * t7 + t4 * t13);
-        let t25 = t10 * t13;
+        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
+        let t5 = pose[0] - t4;
+        let t8 = 0.5 * t2;
+        let t9 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t8;
+        let t12 = t9 * t9 + t5 * t5;
+        let t14 = 0.0576 / t12 - 0.25;
+        ::overact::guard::reach(t14, "leg2")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let t18 = t5 * t15 + 0.5 * t9;
+        let t22 = 0.5 * t5 - t9 * t15;
+        let t25 = t12 * t15;
         ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
         let t26 = 0.24 / t25;
-        let g1_vx_leg2 = (3.608439182435161 * t17 + 2.0833333333333335 * t22) * t26;
+        let g1_vx_leg2 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
         let t30 = pose[1] - 0.35;
         let t33 = t30 * t30 + pose[0] * pose[0];
         let t35 = 0.0576 / t33 - 0.25;
         ::overact::guard::reach(t35, "leg1")?;
         let t36 = ::overact::math::sqrt(t35);
-        let t40 = t33 * t36;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg1")?;
-        let t41 = 1.0 / t40;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t30 * t36 - pose[0]) * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t3;
-        let t50 = 0.5 * t45 + t6;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t59 = t47 - (0.5 * t47 + t50 * t56);
-        let t64 = t50 - (0.5 * t50 - t47 * t56);
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let g1_vx_leg3 = (3.608439182435161 * t59 + 2.0833333333333335 * t64) * t68;
-        let t71 = g1_vx_leg2 * actuator_velocities[1]
+        let t39 = t33 * t36;
+        ::overact::guard::leg(t39, 0.05748423696979895, "leg1")?;
+        let t40 = 1.0 / t39;
+        let minus_g1_vx_leg1 = (t30 * t36 - 0.5 * pose[0]) * t40;
+        let t45 = 0.8660254037844386 * t0 - t8;
+        let t49 = t45 * t45 + t4 * t4;
+        let t51 = 0.0576 / t49 - 0.25;
+        ::overact::guard::reach(t51, "leg3")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t54 = 0.5 * t45 - t4 * t52;
+        let t58 = 0.5 * t4 + t45 * t52;
+        let t61 = t49 * t52;
+        ::overact::guard::leg(t61, 0.05748423696979895, "leg3")?;
+        let t62 = 0.24 / t61;
+        let g1_vx_leg3 = (3.608439182435161 * t54 + 2.0833333333333335 * t58) * t62;
+        let t65 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t76 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t70 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t76, 26.146658848896372, "actuators")?;
-        let t77 = 1.0 / t76;
-        let g1_vy_leg1 = (t30 - (0.5 * t30 - pose[0] * t36)) * t41;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t17)
+        ::overact::guard::platform(t70, 26.146658848896372, "actuators")?;
+        let t71 = 1.0 / t70;
+        let g1_vy_leg1 = (0.5 * t30 + pose[0] * t36) * t40;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t18)
             * t26;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t59 - 3.608439182435161 * t64)
-            * t68;
-        let t96 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
+            * t62;
+        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t97 = t96 * t77;
+        let t90 = t89 * t71;
         let t104 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t96 * t97;
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t90;
         ::overact::guard::platform(t104, 26.146658848896372, "actuators")?;
-        let t112 = (g1_vy_leg1 * actuator_velocities[0]
+        let t105 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t71 * t97) / t104;
-        Ok([t71 * t77 + t97 * t112, t112])
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t65 * t90) / t104;
+        Ok([t65 * t71 + t90 * t105, t105])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -865,7 +851,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 175 operations (62 additions, 105 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 176 intermediates.
+    /// 174 operations (62 additions, 104 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 175 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -874,96 +860,94 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         actuator_accelerations: &[f64; 3],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 + t3;
-        let t6 = 0.8660254037844386 * t2;
-        let t7 = 0.5 * t0 - t6;
-        let t10 = t4 * t4 + t7 * t7;
-        let t12 = 0.0576 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg2")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = t7 * t13 - 0.5 * t4;
-        let t17 = t4 + t16;
-        let t21 = 0.5 * t7 + t4 * t13;
-        let t22 = t7 - t21;
-        let t25 = t10 * t13;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let g1_vx_leg2 = (3.608439182435161 * t17 + 2.0833333333333335 * t22) * t26;
-        let g2_vy_leg2 = (3.608439182435161 * t21 + 2.0833333333333335 * t16) * t26;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t21 - 3.608439182435161 * t16)
-            * t26;
+        let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
+        let t5 = pose[0] - 0.3031088913245535;
+        let t8 = 0.5 * t5 + 0.8660254037844386 * t2;
+        let t9 = pose[0] - t8;
+        let t12 = t4 * t4 + t9 * t9;
+        let t14 = 0.0576 / t12 - 0.25;
+        ::overact::guard::reach(t14, "leg2")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let t18 = t9 * t15 - 0.5 * t4;
+        let t19 = t4 + t18;
+        let t23 = 0.5 * t9 + t4 * t15;
+        let t24 = t9 - t23;
+        let t27 = t12 * t15;
+        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
+        let t28 = 0.24 / t27;
+        let g1_vx_leg2 = (3.608439182435161 * t19 + 2.0833333333333335 * t24) * t28;
+        let g2_vy_leg2 = (3.608439182435161 * t23 + 2.0833333333333335 * t18) * t28;
+        let minus_g2_vx_leg2 = (2.0833333333333335 * t23 - 3.608439182435161 * t18)
+            * t28;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t17)
-            * t26;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t24 - 2.0833333333333335 * t19)
+            * t28;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let rate_dot_1_leg2 = t26
+        let rate_dot_1_leg2 = t28
             * (0.24 * (rate_2_leg2 * rate_2_leg2)
-                + rate_1_leg2 * rate_1_leg2 * (2.0833333333333335 * (t10 - 0.1152)));
-        let t54 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t57 = pose[1] - 0.35;
-        let t60 = t57 * t57 + pose[0] * pose[0];
-        let t62 = 0.0576 / t60 - 0.25;
-        ::overact::guard::reach(t62, "leg1")?;
-        let t63 = ::overact::math::sqrt(t62);
-        let t65 = 0.5 * pose[0] + t57 * t63;
-        let t67 = t60 * t63;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg1")?;
-        let t68 = 1.0 / t67;
-        let minus_g1_vx_leg1 = (t65 - pose[0]) * t68;
-        let minus_g2_vx_leg1 = t65 * t68;
-        let t74 = 0.5 * t57 - pose[0] * t63;
-        let minus_g2_vy_leg1 = t74 * t68;
+                + rate_1_leg2 * rate_1_leg2 * (2.0833333333333335 * (t12 - 0.1152)));
+        let t56 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t59 = pose[1] - 0.35;
+        let t62 = t59 * t59 + pose[0] * pose[0];
+        let t64 = 0.0576 / t62 - 0.25;
+        ::overact::guard::reach(t64, "leg1")?;
+        let t65 = ::overact::math::sqrt(t64);
+        let t67 = 0.5 * pose[0] + t59 * t65;
+        let t69 = t62 * t65;
+        ::overact::guard::leg(t69, 0.05748423696979895, "leg1")?;
+        let t70 = 1.0 / t69;
+        let minus_g1_vx_leg1 = (t67 - pose[0]) * t70;
+        let minus_g2_vx_leg1 = t67 * t70;
+        let t76 = 0.5 * t59 - pose[0] * t65;
+        let minus_g2_vy_leg1 = t76 * t70;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let g1_vy_leg1 = (t57 - t74) * t68;
+        let g1_vy_leg1 = (t59 - t76) * t70;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let rate_dot_1_leg1 = t68
+        let rate_dot_1_leg1 = t70
             * (0.0576 * (minus_rate_2_leg1 * minus_rate_2_leg1)
-                + rate_1_leg1 * rate_1_leg1 * (0.5 * (t60 - 0.1152)));
-        let t91 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t94 = pose[0] - 0.3031088913245535;
-        let t96 = 0.8660254037844386 * t94 - t3;
-        let t99 = 0.5 * t94 + t6;
-        let t102 = t96 * t96 + t99 * t99;
-        let t104 = 0.0576 / t102 - 0.25;
-        ::overact::guard::reach(t104, "leg3")?;
-        let t105 = ::overact::math::sqrt(t104);
-        let t107 = 0.5 * t96 + t99 * t105;
-        let t108 = t96 - t107;
-        let t112 = 0.5 * t99 - t96 * t105;
-        let t113 = t99 - t112;
-        let t116 = t102 * t105;
-        ::overact::guard::leg(t116, 0.05748423696979895, "leg3")?;
-        let t117 = 0.24 / t116;
-        let g1_vx_leg3 = (3.608439182435161 * t108 + 2.0833333333333335 * t113) * t117;
-        let g2_vy_leg3 = (2.0833333333333335 * t107 - 3.608439182435161 * t112) * t117;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t107 + 2.0833333333333335 * t112)
-            * t117;
+                + rate_1_leg1 * rate_1_leg1 * (0.5 * (t62 - 0.1152)));
+        let t93 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t97 = 0.8660254037844386 * t5 - t3;
+        let t101 = t97 * t97 + t8 * t8;
+        let t103 = 0.0576 / t101 - 0.25;
+        ::overact::guard::reach(t103, "leg3")?;
+        let t104 = ::overact::math::sqrt(t103);
+        let t106 = 0.5 * t97 + t8 * t104;
+        let t107 = t97 - t106;
+        let t111 = 0.5 * t8 - t97 * t104;
+        let t112 = t8 - t111;
+        let t115 = t101 * t104;
+        ::overact::guard::leg(t115, 0.05748423696979895, "leg3")?;
+        let t116 = 0.24 / t115;
+        let g1_vx_leg3 = (3.608439182435161 * t107 + 2.0833333333333335 * t112) * t116;
+        let g2_vy_leg3 = (2.0833333333333335 * t106 - 3.608439182435161 * t111) * t116;
+        let minus_g2_vx_leg3 = (3.608439182435161 * t106 + 2.0833333333333335 * t111)
+            * t116;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t108 - 3.608439182435161 * t113)
-            * t117;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t107 - 3.608439182435161 * t112)
+            * t116;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let rate_dot_1_leg3 = t117
+        let rate_dot_1_leg3 = t116
             * (0.24 * (rate_2_leg3 * rate_2_leg3)
-                + rate_1_leg3 * rate_1_leg3 * (2.0833333333333335 * (t102 - 0.1152)));
-        let t145 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t147 = g1_vx_leg2 * t54 - minus_g1_vx_leg1 * t91 + g1_vx_leg3 * t145;
-        let t152 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+                + rate_1_leg3 * rate_1_leg3 * (2.0833333333333335 * (t101 - 0.1152)));
+        let t144 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t146 = g1_vx_leg2 * t56 - minus_g1_vx_leg1 * t93 + g1_vx_leg3 * t144;
+        let t151 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t152, 26.146658848896372, "actuators")?;
-        let t153 = 1.0 / t152;
-        let t159 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t151, 26.146658848896372, "actuators")?;
+        let t152 = 1.0 / t151;
+        let t158 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t160 = t159 * t153;
-        let t167 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t159 * t160;
-        ::overact::guard::platform(t167, 26.146658848896372, "actuators")?;
-        let t175 = (g1_vy_leg1 * t91 - minus_g1_vy_leg2 * t54 - minus_g1_vy_leg3 * t145
-            + t147 * t160) / t167;
-        Ok([t147 * t153 + t160 * t175, t175])
+        let t159 = t158 * t152;
+        let t173 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t158 * t159;
+        ::overact::guard::platform(t173, 26.146658848896372, "actuators")?;
+        let t174 = (g1_vy_leg1 * t93 - minus_g1_vy_leg2 * t56 - minus_g1_vy_leg3 * t144
+            + t146 * t159) / t173;
+        Ok([t146 * t152 + t159 * t174, t174])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -975,7 +959,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 246 operations (88 additions, 152 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 207 intermediates.
+    /// 239 operations (87 additions, 146 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 200 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -984,12 +968,13 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * pose[0] + t1 * t7;
+        let t9 = t0 + t1 * t7;
         let t10 = t9 - pose[0];
         let t11 = t4 * t7;
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
@@ -1020,11 +1005,10 @@ impl ThreeLegPoint {
         let t65 = 4.166666666666667 * t28;
         let t74 = rate_1_leg1 + minus_rate_2_leg1;
         let t78 = pose[0] + 0.3031088913245535;
-        let t80 = pose[1] + 0.175;
-        let t81 = 0.5 * t80;
+        let t81 = 0.5 * (pose[1] + 0.175);
         let t82 = 0.8660254037844386 * t78 + t81;
-        let t84 = 0.8660254037844386 * t80;
-        let t85 = 0.5 * t78 - t84;
+        let t84 = t0 + pose[1] * 0.8660254037844386;
+        let t85 = pose[0] - t84;
         let t88 = t82 * t82 + t85 * t85;
         let t90 = 0.0576 / t88 - 0.25;
         ::overact::guard::reach(t90, "leg2")?;
@@ -1041,88 +1025,85 @@ impl ThreeLegPoint {
         let t108 = 3.608439182435161 * t100 - 2.0833333333333335 * t95;
         let t114 = 3.608439182435161 * t99 + 2.0833333333333335 * t94;
         let g2_vy_leg2 = t114 * t104;
-        let t119 = 2.0833333333333335 * t99 - 3.608439182435161 * t94;
-        let minus_g2_vx_leg2 = t119 * t104;
+        let t118 = 4.166666666666667 * t78 - t102;
+        let minus_g2_vx_leg2 = t118 * t104;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t123 = rate_2_leg2 * rate_2_leg2;
-        let t125 = t108 * acceleration[1] - t102 * acceleration[0] - 0.24 * t123;
+        let t122 = rate_2_leg2 * rate_2_leg2;
+        let t124 = t108 * acceleration[1] - t102 * acceleration[0] - 0.24 * t122;
         let minus_g1_vy_leg2 = t108 * t104;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t130 = rate_1_leg2 * rate_1_leg2;
-        let t132 = 2.0833333333333335 * (t88 - 0.1152);
-        let minus_rate_dot_1_leg2 = t104 * (t125 - t130 * t132);
-        let t136 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t137 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t146 = t119 * acceleration[0] - t114 * acceleration[1] + 0.24 * t130;
-        let minus_rate_dot_2_leg2 = t104 * (t146 + t123 * t132);
-        let t150 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t151 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t167 = rate_2_leg2 - rate_1_leg2;
-        let t171 = pose[0] - 0.3031088913245535;
-        let t173 = 0.8660254037844386 * t171 - t81;
-        let t176 = 0.5 * t171 + t84;
-        let t179 = t173 * t173 + t176 * t176;
-        let t181 = 0.0576 / t179 - 0.25;
-        ::overact::guard::reach(t181, "leg3")?;
-        let t182 = ::overact::math::sqrt(t181);
-        let t184 = 0.5 * t173 + t176 * t182;
-        let t185 = t173 - t184;
-        let t189 = 0.5 * t176 - t173 * t182;
-        let t190 = t176 - t189;
-        let t192 = 3.608439182435161 * t185 + 2.0833333333333335 * t190;
-        let t193 = t179 * t182;
-        ::overact::guard::leg(t193, 0.05748423696979895, "leg3")?;
-        let t194 = 0.24 / t193;
-        let g1_vx_leg3 = t192 * t194;
-        let t199 = 2.0833333333333335 * t185 - 3.608439182435161 * t190;
-        let t204 = 2.0833333333333335 * t184 - 3.608439182435161 * t189;
-        let g2_vy_leg3 = t204 * t194;
-        let t209 = 3.608439182435161 * t184 + 2.0833333333333335 * t189;
-        let minus_g2_vx_leg3 = t209 * t194;
+        let t129 = rate_1_leg2 * rate_1_leg2;
+        let t131 = 2.0833333333333335 * (t88 - 0.1152);
+        let minus_rate_dot_1_leg2 = t104 * (t124 - t129 * t131);
+        let t135 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t136 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t145 = t118 * acceleration[0] - t114 * acceleration[1] + 0.24 * t129;
+        let minus_rate_dot_2_leg2 = t104 * (t145 + t122 * t131);
+        let t149 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t150 = g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let t166 = rate_2_leg2 - rate_1_leg2;
+        let t170 = pose[0] - 0.3031088913245535;
+        let t172 = 0.8660254037844386 * t170 - t81;
+        let t176 = t172 * t172 + t84 * t84;
+        let t178 = 0.0576 / t176 - 0.25;
+        ::overact::guard::reach(t178, "leg3")?;
+        let t179 = ::overact::math::sqrt(t178);
+        let t181 = 0.5 * t172 - t84 * t179;
+        let t185 = 0.5 * t84 + t172 * t179;
+        let t187 = 3.608439182435161 * t181 + 2.0833333333333335 * t185;
+        let t188 = t176 * t179;
+        ::overact::guard::leg(t188, 0.05748423696979895, "leg3")?;
+        let t189 = 0.24 / t188;
+        let g1_vx_leg3 = t187 * t189;
+        let t194 = 2.0833333333333335 * t181 - 3.608439182435161 * t185;
+        let t198 = t108 + t114 - t194;
+        let g2_vy_leg3 = t198 * t189;
+        let t202 = 4.166666666666667 * t170 - t187;
+        let minus_g2_vx_leg3 = t202 * t189;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t213 = rate_2_leg3 * rate_2_leg3;
-        let t215 = t192 * acceleration[0] - t199 * acceleration[1] + 0.24 * t213;
-        let minus_g1_vy_leg3 = t199 * t194;
+        let t206 = rate_2_leg3 * rate_2_leg3;
+        let t208 = t187 * acceleration[0] - t194 * acceleration[1] + 0.24 * t206;
+        let minus_g1_vy_leg3 = t194 * t189;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t220 = rate_1_leg3 * rate_1_leg3;
-        let t222 = 2.0833333333333335 * (t179 - 0.1152);
-        let rate_dot_1_leg3 = t194 * (t215 + t220 * t222);
-        let t226 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t227 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let t236 = t204 * acceleration[1] - t209 * acceleration[0] - 0.24 * t220;
-        let rate_dot_2_leg3 = t194 * (t236 - t213 * t222);
-        let t240 = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let t241 = g2_vy_leg3 * rate_dot_2_leg3;
-        let t257 = rate_2_leg3 - rate_1_leg3;
+        let t213 = rate_1_leg3 * rate_1_leg3;
+        let t215 = 2.0833333333333335 * (t176 - 0.1152);
+        let rate_dot_1_leg3 = t189 * (t208 + t213 * t215);
+        let t219 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t220 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let t229 = t198 * acceleration[1] - t202 * acceleration[0] - 0.24 * t213;
+        let rate_dot_2_leg3 = t189 * (t229 - t206 * t215);
+        let t233 = minus_g2_vx_leg3 * rate_dot_2_leg3;
+        let t234 = g2_vy_leg3 * rate_dot_2_leg3;
+        let t250 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
                 t39, t39, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t53,
                 t55 - 0.24 * (t39 + t53), -(minus_g1_vx_leg1 * t63 + minus_g2_vx_leg1 * t65),
                 0.0576 * t39, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t74),
-                -t136, -t136, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t150,
-                t55 - 0.24 * (t150 - t136), g1_vx_leg2 * t146 - minus_g2_vx_leg2 * t125,
-                -(0.0576 * t136), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t167),
-                t226, t226, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t240,
-                t55 - 0.24 * (t226 - t240), minus_g2_vx_leg3 * t215 - g1_vx_leg3 * t236,
-                0.0576 * t226, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t257),
+                -t135, -t135, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t149,
+                t55 - 0.24 * (t149 - t135), g1_vx_leg2 * t145 - minus_g2_vx_leg2 * t124,
+                -(0.0576 * t135), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t166),
+                t219, t219, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t233,
+                t55 - 0.24 * (t219 - t233), minus_g2_vx_leg3 * t208 - g1_vx_leg3 * t229,
+                0.0576 * t219, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t250),
                 acceleration[0],
             ],
             [
                 -t40, -t40, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t54,
                 t59 - 0.24 * (t54 - t40), g1_vy_leg1 * t63 - minus_g2_vy_leg1 * t65,
-                -(0.0576 * t40), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t74), t137,
-                t137, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t151,
-                t59 - 0.24 * (t137 - t151), g2_vy_leg2 * t125 - minus_g1_vy_leg2 * t146,
-                0.0576 * t137, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t167), -t227,
-                -t227, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t241,
-                t59 - 0.24 * (t241 - t227), minus_g1_vy_leg3 * t236 - g2_vy_leg3 * t215,
-                -(0.0576 * t227), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t257),
+                -(0.0576 * t40), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t74), t136,
+                t136, -(minus_g1_vy_leg2 * rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t150,
+                t59 - 0.24 * (t136 - t150), g2_vy_leg2 * t124 - minus_g1_vy_leg2 * t145,
+                0.0576 * t136, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t166), -t220,
+                -t220, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t234,
+                t59 - 0.24 * (t234 - t220), minus_g1_vy_leg3 * t229 - g2_vy_leg3 * t208,
+                -(0.0576 * t220), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t250),
                 acceleration[1],
             ],
         ])
@@ -1271,7 +1252,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 307 operations (113 additions, 186 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 266 intermediates.
+    /// 300 operations (112 additions, 180 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 259 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1282,23 +1263,23 @@ impl ThreeLegPoint {
         start: &[f64; 2],
     ) -> Result<[[f64; 31]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * pose[0] + t1 * t7;
+        let t9 = t0 + t1 * t7;
         let t10 = t9 - pose[0];
         let t11 = t4 * t7;
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
         let t12 = 1.0 / t11;
         let minus_g1_vx_leg1 = t10 * t12;
         let t15 = pose[0] + 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t18 = 0.5 * t17;
+        let t18 = 0.5 * (pose[1] + 0.175);
         let t19 = 0.8660254037844386 * t15 + t18;
-        let t21 = 0.8660254037844386 * t17;
-        let t22 = 0.5 * t15 - t21;
+        let t21 = t0 + pose[1] * 0.8660254037844386;
+        let t22 = pose[0] - t21;
         let t25 = t19 * t19 + t22 * t22;
         let t27 = 0.0576 / t25 - 0.25;
         ::overact::guard::reach(t27, "leg2")?;
@@ -1314,150 +1295,147 @@ impl ThreeLegPoint {
         let g1_vx_leg2 = t39 * t41;
         let t45 = pose[0] - 0.3031088913245535;
         let t47 = 0.8660254037844386 * t45 - t18;
-        let t50 = 0.5 * t45 + t21;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t47 + t50 * t56;
-        let t59 = t47 - t58;
-        let t63 = 0.5 * t50 - t47 * t56;
-        let t64 = t50 - t63;
-        let t66 = 3.608439182435161 * t59 + 2.0833333333333335 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let g1_vx_leg3 = t66 * t68;
-        let t71 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t51 = t47 * t47 + t21 * t21;
+        let t53 = 0.0576 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg3")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t56 = 0.5 * t47 - t21 * t54;
+        let t60 = 0.5 * t21 + t47 * t54;
+        let t62 = 3.608439182435161 * t56 + 2.0833333333333335 * t60;
+        let t63 = t51 * t54;
+        ::overact::guard::leg(t63, 0.05748423696979895, "leg3")?;
+        let t64 = 0.24 / t63;
+        let g1_vx_leg3 = t62 * t64;
+        let t67 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t71, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t71, 26.146658848896372, "actuators")?;
-        let t72 = 1.0 / t71;
-        let t75 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
-        let g2_vy_leg2 = t75 * t41;
-        let t79 = 0.5 * t1 - pose[0] * t7;
-        let t80 = t1 - t79;
-        let g1_vy_leg1 = t80 * t12;
-        let t85 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
-        let minus_g1_vy_leg2 = t85 * t41;
-        let t91 = 2.0833333333333335 * t59 - 3.608439182435161 * t64;
-        let minus_g1_vy_leg3 = t91 * t68;
-        let t99 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
+        let t68 = 1.0 / t67;
+        let t71 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
+        let g2_vy_leg2 = t71 * t41;
+        let t75 = 0.5 * t1 - pose[0] * t7;
+        let t76 = t1 - t75;
+        let g1_vy_leg1 = t76 * t12;
+        let t81 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
+        let minus_g1_vy_leg2 = t81 * t41;
+        let t87 = 2.0833333333333335 * t56 - 3.608439182435161 * t60;
+        let minus_g1_vy_leg3 = t87 * t64;
+        let t95 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t100 = t99 * t72;
-        let t102 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t99 * t100;
-        ::overact::guard::platform(t102, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t102, 26.146658848896372, "actuators")?;
-        let t103 = 1.0 / t102;
-        let t113 = g1_vx_leg2 * actuator_velocities[1]
+        let t96 = t95 * t68;
+        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t95 * t96;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        let t99 = 1.0 / t98;
+        let t109 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t116 = t103
+        let t112 = t99
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t113 * t100);
-        let t120 = 2.0833333333333335 * t36 - 3.608439182435161 * t31;
-        let minus_g2_vx_leg2 = t120 * t41;
-        let t124 = t113 * t72 + t100 * t116;
-        let rate_2_leg2 = g2_vy_leg2 * t116 - minus_g2_vx_leg2 * t124;
-        let t127 = rate_2_leg2 * rate_2_leg2;
-        let t128 = 0.24 * t127;
-        let rate_1_leg2 = g1_vx_leg2 * t124 - minus_g1_vy_leg2 * t116;
-        let t132 = rate_1_leg2 * rate_1_leg2;
-        let t134 = 2.0833333333333335 * (t25 - 0.1152);
-        let t135 = t132 * t134;
-        let rate_dot_1_leg2 = t41 * (t128 + t135);
-        let t138 = actuator_accelerations[1] - rate_dot_1_leg2;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t109 * t96);
+        let t115 = t15 * 4.166666666666667 - t39;
+        let minus_g2_vx_leg2 = t115 * t41;
+        let t119 = t109 * t68 + t96 * t112;
+        let rate_2_leg2 = g2_vy_leg2 * t112 - minus_g2_vx_leg2 * t119;
+        let t122 = rate_2_leg2 * rate_2_leg2;
+        let t123 = 0.24 * t122;
+        let rate_1_leg2 = g1_vx_leg2 * t119 - minus_g1_vy_leg2 * t112;
+        let t127 = rate_1_leg2 * rate_1_leg2;
+        let t129 = 2.0833333333333335 * (t25 - 0.1152);
+        let t130 = t127 * t129;
+        let rate_dot_1_leg2 = t41 * (t123 + t130);
+        let t133 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t79 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t124 + minus_g2_vy_leg1 * t116;
-        let t145 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t146 = 0.0576 * t145;
-        let rate_1_leg1 = g1_vy_leg1 * t116 - minus_g1_vx_leg1 * t124;
-        let t150 = rate_1_leg1 * rate_1_leg1;
-        let t152 = 0.5 * (t4 - 0.1152);
-        let t153 = t150 * t152;
-        let rate_dot_1_leg1 = t12 * (t146 + t153);
-        let t156 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t161 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let g2_vy_leg3 = t161 * t68;
-        let t166 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let minus_g2_vx_leg3 = t166 * t68;
-        let rate_2_leg3 = g2_vy_leg3 * t116 - minus_g2_vx_leg3 * t124;
-        let t170 = rate_2_leg3 * rate_2_leg3;
-        let t171 = 0.24 * t170;
-        let rate_1_leg3 = g1_vx_leg3 * t124 - minus_g1_vy_leg3 * t116;
-        let t175 = rate_1_leg3 * rate_1_leg3;
-        let t177 = 2.0833333333333335 * (t53 - 0.1152);
-        let t178 = t175 * t177;
-        let rate_dot_1_leg3 = t68 * (t171 + t178);
-        let t181 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t183 = g1_vx_leg2 * t138 - minus_g1_vx_leg1 * t156 + g1_vx_leg3 * t181;
-        let t192 = t103
-            * (g1_vy_leg1 * t156 - minus_g1_vy_leg2 * t138 - minus_g1_vy_leg3 * t181
-                + t100 * t183);
-        let t194 = t72 * t183 + t100 * t192;
-        let t198 = t10 * t194 - t80 * t192 - t146;
-        let minus_rate_dot_1_leg1 = t12 * (t198 - t153);
-        let t201 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let t202 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t211 = t9 * t194 + t79 * t192 + 0.0576 * t150;
-        let minus_rate_dot_2_leg1 = t12 * (t211 + t145 * t152);
-        let t215 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t216 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let t217 = 4.166666666666667 * t194;
-        let t221 = 4.166666666666667 * t192;
-        let t225 = 4.166666666666667 * t211;
-        let t227 = 4.166666666666667 * t198;
-        let t236 = rate_1_leg1 + minus_rate_2_leg1;
-        let t243 = t85 * t192 - t39 * t194 - t128;
-        let minus_rate_dot_1_leg2 = t41 * (t243 - t135);
-        let t246 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t247 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t256 = t120 * t194 - t75 * t192 + 0.24 * t132;
-        let minus_rate_dot_2_leg2 = t41 * (t256 + t127 * t134);
-        let t260 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t261 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t277 = rate_2_leg2 - rate_1_leg2;
-        let t284 = t66 * t194 - t91 * t192 + t171;
-        let rate_dot_1_leg3_2 = t68 * (t284 + t178);
-        let t287 = g1_vx_leg3 * rate_dot_1_leg3_2;
-        let t288 = minus_g1_vy_leg3 * rate_dot_1_leg3_2;
-        let t297 = t161 * t192 - t166 * t194 - 0.24 * t175;
-        let rate_dot_2_leg3 = t68 * (t297 - t170 * t177);
-        let t301 = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let t302 = g2_vy_leg3 * rate_dot_2_leg3;
-        let t318 = rate_2_leg3 - rate_1_leg3;
+        let minus_g2_vy_leg1 = t75 * t12;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t119 + minus_g2_vy_leg1 * t112;
+        let t140 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t141 = 0.0576 * t140;
+        let rate_1_leg1 = g1_vy_leg1 * t112 - minus_g1_vx_leg1 * t119;
+        let t145 = rate_1_leg1 * rate_1_leg1;
+        let t147 = 0.5 * (t4 - 0.1152);
+        let t148 = t145 * t147;
+        let rate_dot_1_leg1 = t12 * (t141 + t148);
+        let t151 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t155 = t71 + t81 - t87;
+        let g2_vy_leg3 = t155 * t64;
+        let t159 = t45 * 4.166666666666667 - t62;
+        let minus_g2_vx_leg3 = t159 * t64;
+        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t119;
+        let t163 = rate_2_leg3 * rate_2_leg3;
+        let t164 = 0.24 * t163;
+        let rate_1_leg3 = g1_vx_leg3 * t119 - minus_g1_vy_leg3 * t112;
+        let t168 = rate_1_leg3 * rate_1_leg3;
+        let t170 = 2.0833333333333335 * (t51 - 0.1152);
+        let t171 = t168 * t170;
+        let rate_dot_1_leg3 = t64 * (t164 + t171);
+        let t174 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t176 = g1_vx_leg2 * t133 - minus_g1_vx_leg1 * t151 + g1_vx_leg3 * t174;
+        let t185 = t99
+            * (g1_vy_leg1 * t151 - minus_g1_vy_leg2 * t133 - minus_g1_vy_leg3 * t174
+                + t96 * t176);
+        let t187 = t68 * t176 + t96 * t185;
+        let t191 = t10 * t187 - t76 * t185 - t141;
+        let minus_rate_dot_1_leg1 = t12 * (t191 - t148);
+        let t194 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+        let t195 = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let t204 = t9 * t187 + t75 * t185 + 0.0576 * t145;
+        let minus_rate_dot_2_leg1 = t12 * (t204 + t140 * t147);
+        let t208 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t209 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let t210 = 4.166666666666667 * t187;
+        let t214 = 4.166666666666667 * t185;
+        let t218 = 4.166666666666667 * t204;
+        let t220 = 4.166666666666667 * t191;
+        let t229 = rate_1_leg1 + minus_rate_2_leg1;
+        let t236 = t81 * t185 - t39 * t187 - t123;
+        let minus_rate_dot_1_leg2 = t41 * (t236 - t130);
+        let t239 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t240 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t249 = t115 * t187 - t71 * t185 + 0.24 * t127;
+        let minus_rate_dot_2_leg2 = t41 * (t249 + t122 * t129);
+        let t253 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t254 = g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let t270 = rate_2_leg2 - rate_1_leg2;
+        let t277 = t62 * t187 - t87 * t185 + t164;
+        let rate_dot_1_leg3_2 = t64 * (t277 + t171);
+        let t280 = g1_vx_leg3 * rate_dot_1_leg3_2;
+        let t281 = minus_g1_vy_leg3 * rate_dot_1_leg3_2;
+        let t290 = t155 * t185 - t159 * t187 - 0.24 * t168;
+        let rate_dot_2_leg3 = t64 * (t290 - t163 * t170);
+        let t294 = minus_g2_vx_leg3 * rate_dot_2_leg3;
+        let t295 = g2_vy_leg3 * rate_dot_2_leg3;
+        let t311 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
-                t201, t201, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t215,
-                t217 - 0.24 * (t201 + t215), -(minus_g1_vx_leg1 * t225 + minus_g2_vx_leg1 * t227),
-                0.0576 * t201, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t236),
-                -t246, -t246, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t260,
-                t217 - 0.24 * (t260 - t246), g1_vx_leg2 * t256 - minus_g2_vx_leg2 * t243,
-                -(0.0576 * t246), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t277),
-                t287, t287, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t301,
-                t217 - 0.24 * (t287 - t301), minus_g2_vx_leg3 * t284 - g1_vx_leg3 * t297,
-                0.0576 * t287, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t318), t194,
+                t194, t194, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t208,
+                t210 - 0.24 * (t194 + t208), -(minus_g1_vx_leg1 * t218 + minus_g2_vx_leg1 * t220),
+                0.0576 * t194, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t229),
+                -t239, -t239, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t253,
+                t210 - 0.24 * (t253 - t239), g1_vx_leg2 * t249 - minus_g2_vx_leg2 * t236,
+                -(0.0576 * t239), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t270),
+                t280, t280, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t294,
+                t210 - 0.24 * (t280 - t294), minus_g2_vx_leg3 * t277 - g1_vx_leg3 * t290,
+                0.0576 * t280, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t311), t187,
             ],
             [
-                -t202, -t202, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t216,
-                t221 - 0.24 * (t216 - t202), g1_vy_leg1 * t225 - minus_g2_vy_leg1 * t227,
-                -(0.0576 * t202), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t236),
-                t247, t247, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t261,
-                t221 - 0.24 * (t247 - t261), g2_vy_leg2 * t243 - minus_g1_vy_leg2 * t256,
-                0.0576 * t247, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t277), -t288,
-                -t288, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t302,
-                t221 - 0.24 * (t302 - t288), minus_g1_vy_leg3 * t297 - g2_vy_leg3 * t284,
-                -(0.0576 * t288), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t318),
-                t192,
+                -t195, -t195, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t209,
+                t214 - 0.24 * (t209 - t195), g1_vy_leg1 * t218 - minus_g2_vy_leg1 * t220,
+                -(0.0576 * t195), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t229),
+                t240, t240, -(minus_g1_vy_leg2 * rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t254,
+                t214 - 0.24 * (t240 - t254), g2_vy_leg2 * t236 - minus_g1_vy_leg2 * t249,
+                0.0576 * t240, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t270), -t281,
+                -t281, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t295,
+                t214 - 0.24 * (t295 - t281), minus_g1_vy_leg3 * t290 - g2_vy_leg3 * t277,
+                -(0.0576 * t281), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t311),
+                t185,
             ],
         ])
     }
@@ -1471,7 +1449,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 264 operations (93 additions, 164 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 233 intermediates.
+    /// 259 operations (91 additions, 160 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 228 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1504,126 +1482,124 @@ impl ThreeLegPoint {
         let t33 = rate_1_leg1 * rate_1_leg1;
         let t35 = 0.5 * (t3 - 0.1152);
         let minus_rate_dot_1_leg1 = t8 * (t27 - t33 * t35);
-        let t40 = pose[0] + 0.3031088913245535;
+        let t40 = pose[0] - 0.3031088913245535;
         let t42 = pose[1] + 0.175;
-        let t43 = 0.8660254037844386 * t42;
-        let t44 = 0.5 * t40 - t43;
-        let t47 = 0.5 * t42;
-        let t48 = 0.8660254037844386 * t40 + t47;
-        let t51 = t48 * t48 + t44 * t44;
-        let t53 = 0.0576 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg2")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t56 = 0.5 * t44 + t48 * t54;
-        let t57 = t44 - t56;
-        let t61 = t44 * t54 - 0.5 * t48;
-        let t62 = t48 + t61;
-        let t64 = 3.608439182435161 * t57 - 2.0833333333333335 * t62;
-        let t65 = t51 * t54;
-        ::overact::guard::leg(t65, 0.05748423696979895, "leg2")?;
-        let t66 = 0.24 / t65;
-        let minus_g1_vy_leg2 = t64 * t66;
-        let t71 = 3.608439182435161 * t62 + 2.0833333333333335 * t57;
-        let g1_vx_leg2 = t71 * t66;
-        let t74 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t74, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t74, 15.09578052481963, "kept actuators")?;
-        let t75 = 1.0 / t74;
-        let t76 = minus_g1_vy_leg2 * t75;
-        let t78 = g1_vx_leg2 * t75;
-        let t80 = minus_g2_vx_leg1 * t76 + minus_g2_vy_leg1 * t78;
-        let t85 = t11 * acceleration[0] + t16 * acceleration[1] + 0.0576 * t33;
-        let minus_rate_dot_2_leg1 = t8 * (t85 + t25 * t35);
-        let t89 = t80 * minus_rate_dot_2_leg1;
-        let t90 = g1_vy_leg1 * t75;
-        let t92 = minus_g1_vx_leg1 * t75;
-        let t94 = minus_g2_vx_leg1 * t90 + minus_g2_vy_leg1 * t92;
-        let t95 = t94 * minus_rate_dot_2_leg1;
-        let t100 = t76 * acceleration[0] + t78 * acceleration[1];
-        let t101 = 4.166666666666667 * t100;
-        let t106 = t90 * acceleration[0] + t92 * acceleration[1];
+        let t44 = 0.5 * t40 + 0.8660254037844386 * t42;
+        let t45 = pose[0] - t44;
+        let t49 = 0.5 * t42;
+        let t50 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t49;
+        let t53 = t50 * t50 + t45 * t45;
+        let t55 = 0.0576 / t53 - 0.25;
+        ::overact::guard::reach(t55, "leg2")?;
+        let t56 = ::overact::math::sqrt(t55);
+        let t58 = 0.5 * t45 + t50 * t56;
+        let t59 = t45 - t58;
+        let t63 = t45 * t56 - 0.5 * t50;
+        let t64 = t50 + t63;
+        let t66 = 3.608439182435161 * t59 - 2.0833333333333335 * t64;
+        let t67 = t53 * t56;
+        ::overact::guard::leg(t67, 0.05748423696979895, "leg2")?;
+        let t68 = 0.24 / t67;
+        let minus_g1_vy_leg2 = t66 * t68;
+        let t73 = 3.608439182435161 * t64 + 2.0833333333333335 * t59;
+        let g1_vx_leg2 = t73 * t68;
+        let t76 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(t76, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(t76, 15.09578052481963, "kept actuators")?;
+        let t77 = 1.0 / t76;
+        let t78 = minus_g1_vy_leg2 * t77;
+        let t80 = g1_vx_leg2 * t77;
+        let t82 = minus_g2_vx_leg1 * t78 + minus_g2_vy_leg1 * t80;
+        let t87 = t11 * acceleration[0] + t16 * acceleration[1] + 0.0576 * t33;
+        let minus_rate_dot_2_leg1 = t8 * (t87 + t25 * t35);
+        let t91 = t82 * minus_rate_dot_2_leg1;
+        let t92 = t8 * t77;
+        let t93 = t92 * minus_rate_dot_2_leg1;
+        let t98 = t78 * acceleration[0] + t80 * acceleration[1];
+        let t99 = 4.166666666666667 * t98;
+        let t102 = g1_vy_leg1 * t77;
+        let t104 = minus_g1_vx_leg1 * t77;
+        let t106 = t102 * acceleration[0] + t104 * acceleration[1];
         let t107 = 4.166666666666667 * t106;
         let t110 = 4.166666666666667 * t27;
         let t116 = rate_1_leg1 + minus_rate_2_leg1;
-        let t124 = 3.608439182435161 * t56 + 2.0833333333333335 * t61;
-        let g2_vy_leg2 = t124 * t66;
-        let t129 = 2.0833333333333335 * t56 - 3.608439182435161 * t61;
-        let minus_g2_vx_leg2 = t129 * t66;
+        let t124 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
+        let g2_vy_leg2 = t124 * t68;
+        let t129 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
+        let minus_g2_vx_leg2 = t129 * t68;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
         let t133 = rate_2_leg2 * rate_2_leg2;
-        let t135 = t64 * acceleration[1] - t71 * acceleration[0] - 0.24 * t133;
+        let t135 = t66 * acceleration[1] - t73 * acceleration[0] - 0.24 * t133;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
         let t139 = rate_1_leg2 * rate_1_leg2;
-        let t141 = 2.0833333333333335 * (t51 - 0.1152);
-        let minus_rate_dot_1_leg2 = t66 * (t135 - t139 * t141);
-        let t148 = minus_g2_vx_leg2 * t76 - g2_vy_leg2 * t78;
-        let t153 = t129 * acceleration[0] - t124 * acceleration[1] + 0.24 * t139;
-        let minus_rate_dot_2_leg2 = t66 * (t153 + t133 * t141);
-        let t157 = t148 * minus_rate_dot_2_leg2;
-        let t160 = minus_g2_vx_leg2 * t90 - g2_vy_leg2 * t92;
-        let t161 = t160 * minus_rate_dot_2_leg2;
-        let t171 = rate_2_leg2 - rate_1_leg2;
-        let t175 = pose[0] - 0.3031088913245535;
-        let t177 = 0.8660254037844386 * t175 - t47;
-        let t180 = 0.5 * t175 + t43;
-        let t183 = t177 * t177 + t180 * t180;
-        let t185 = 0.0576 / t183 - 0.25;
-        ::overact::guard::reach(t185, "leg3")?;
-        let t186 = ::overact::math::sqrt(t185);
-        let t188 = 0.5 * t177 + t180 * t186;
-        let t189 = t177 - t188;
-        let t193 = 0.5 * t180 - t177 * t186;
-        let t194 = t180 - t193;
-        let t196 = 2.0833333333333335 * t189 - 3.608439182435161 * t194;
-        let t197 = t183 * t186;
-        ::overact::guard::leg(t197, 0.05748423696979895, "leg3")?;
-        let t198 = 0.24 / t197;
-        let minus_g1_vy_leg3 = t196 * t198;
-        let t203 = 3.608439182435161 * t189 + 2.0833333333333335 * t194;
-        let g1_vx_leg3 = t203 * t198;
-        let t206 = minus_g1_vy_leg3 * t78 - g1_vx_leg3 * t76;
-        let t212 = 2.0833333333333335 * t188 - 3.608439182435161 * t193;
-        let g2_vy_leg3 = t212 * t198;
-        let t217 = 3.608439182435161 * t188 + 2.0833333333333335 * t193;
-        let minus_g2_vx_leg3 = t217 * t198;
+        let t141 = 2.0833333333333335 * (t53 - 0.1152);
+        let minus_rate_dot_1_leg2 = t68 * (t135 - t139 * t141);
+        let t146 = t77 / t67;
+        let t151 = t129 * acceleration[0] - t124 * acceleration[1] + 0.24 * t139;
+        let minus_rate_dot_2_leg2 = t68 * (t151 + t133 * t141);
+        let t155 = t146 * minus_rate_dot_2_leg2;
+        let t158 = minus_g2_vx_leg2 * t102 - g2_vy_leg2 * t104;
+        let t159 = t158 * minus_rate_dot_2_leg2;
+        let t169 = rate_2_leg2 - rate_1_leg2;
+        let t174 = 0.8660254037844386 * t40 - t49;
+        let t178 = t174 * t174 + t44 * t44;
+        let t180 = 0.0576 / t178 - 0.25;
+        ::overact::guard::reach(t180, "leg3")?;
+        let t181 = ::overact::math::sqrt(t180);
+        let t183 = 0.5 * t174 + t44 * t181;
+        let t184 = t174 - t183;
+        let t188 = 0.5 * t44 - t174 * t181;
+        let t189 = t44 - t188;
+        let t191 = 2.0833333333333335 * t184 - 3.608439182435161 * t189;
+        let t192 = t178 * t181;
+        ::overact::guard::leg(t192, 0.05748423696979895, "leg3")?;
+        let t193 = 0.24 / t192;
+        let minus_g1_vy_leg3 = t191 * t193;
+        let t198 = 3.608439182435161 * t184 + 2.0833333333333335 * t189;
+        let g1_vx_leg3 = t198 * t193;
+        let t201 = minus_g1_vy_leg3 * t80 - g1_vx_leg3 * t78;
+        let t207 = 2.0833333333333335 * t183 - 3.608439182435161 * t188;
+        let g2_vy_leg3 = t207 * t193;
+        let t212 = 3.608439182435161 * t183 + 2.0833333333333335 * t188;
+        let minus_g2_vx_leg3 = t212 * t193;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t221 = rate_2_leg3 * rate_2_leg3;
-        let t223 = t203 * acceleration[0] - t196 * acceleration[1] + 0.24 * t221;
+        let t216 = rate_2_leg3 * rate_2_leg3;
+        let t218 = t198 * acceleration[0] - t191 * acceleration[1] + 0.24 * t216;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t227 = rate_1_leg3 * rate_1_leg3;
-        let t229 = 2.0833333333333335 * (t183 - 0.1152);
-        let rate_dot_1_leg3 = t198 * (t223 + t227 * t229);
-        let t233 = t206 * rate_dot_1_leg3;
-        let t236 = minus_g1_vy_leg3 * t92 - g1_vx_leg3 * t90;
-        let t237 = t236 * rate_dot_1_leg3;
-        let t244 = minus_g2_vx_leg3 * t76 - g2_vy_leg3 * t78;
-        let t249 = t212 * acceleration[1] - t217 * acceleration[0] - 0.24 * t227;
-        let rate_dot_2_leg3 = t198 * (t249 - t221 * t229);
-        let t253 = t244 * rate_dot_2_leg3;
-        let t256 = minus_g2_vx_leg3 * t90 - g2_vy_leg3 * t92;
-        let t257 = t256 * rate_dot_2_leg3;
-        let t273 = rate_2_leg3 - rate_1_leg3;
+        let t222 = rate_1_leg3 * rate_1_leg3;
+        let t224 = 2.0833333333333335 * (t178 - 0.1152);
+        let rate_dot_1_leg3 = t193 * (t218 + t222 * t224);
+        let t228 = t201 * rate_dot_1_leg3;
+        let t231 = minus_g1_vy_leg3 * t104 - g1_vx_leg3 * t102;
+        let t232 = t231 * rate_dot_1_leg3;
+        let t239 = minus_g2_vx_leg3 * t78 - g2_vy_leg3 * t80;
+        let t244 = t207 * acceleration[1] - t212 * acceleration[0] - 0.24 * t222;
+        let rate_dot_2_leg3 = t193 * (t244 - t216 * t224);
+        let t248 = t239 * rate_dot_2_leg3;
+        let t251 = minus_g2_vx_leg3 * t102 - g2_vy_leg3 * t104;
+        let t252 = t251 * rate_dot_2_leg3;
+        let t268 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -t89,
-                0.24 * (minus_rate_dot_1_leg1 + t89) - t101, 4.166666666666667 * t85 + t80 * t110,
-                -(0.0576 * minus_rate_dot_1_leg1), -::overact::math::signed(t80 - 1.0, t116), 0.0,
-                0.0, 0.0, 0.0, 0.0, -t157, 0.24 * t157 - t101, t148 * t135, 0.0,
-                ::overact::math::signed(t148, t171), t233, t233, t206 * rate_1_leg3,
-                ::overact::math::signed(t206, rate_1_leg3), t206, t253,
-                -(t101 + 0.24 * (t233 + t253)), -(t206 * t249 + t244 * t223), 0.0576 * t233,
-                ::overact::math::signed(t244 - t206, t273), -t100,
+                ::overact::math::sign(rate_1_leg1), 1.0, -t91,
+                0.24 * (minus_rate_dot_1_leg1 + t91) - t99, 4.166666666666667 * t87 + t82 * t110,
+                -(0.0576 * minus_rate_dot_1_leg1), -::overact::math::signed(t82 - 1.0, t116), 0.0,
+                0.0, 0.0, 0.0, 0.0, t155, -(0.24 * t155 + t99), -(t146 * t135), 0.0,
+                -::overact::math::signed(t146, t169), t228, t228, t201 * rate_1_leg3,
+                ::overact::math::signed(t201, rate_1_leg3), t201, t248,
+                -(t99 + 0.24 * (t228 + t248)), -(t201 * t244 + t239 * t218), 0.0576 * t228,
+                ::overact::math::signed(t239 - t201, t268), -t98,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t95, 0.24 * t95 - t107, t94 * t110, 0.0,
-                -::overact::math::signed(t94, t116), -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2,
-                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t161,
-                0.24 * (minus_rate_dot_1_leg2 + t161) - t107, t153 + t160 * t135,
-                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t160 - 1.0, t171), t237,
-                t237, t236 * rate_1_leg3, ::overact::math::signed(t236, rate_1_leg3), t236, t257,
-                -(t107 + 0.24 * (t237 + t257)), -(t236 * t249 + t256 * t223), 0.0576 * t237,
-                ::overact::math::signed(t256 - t236, t273), -t106,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t93, 0.24 * t93 - t107, t92 * t110, 0.0,
+                -::overact::math::signed(t92, t116), -minus_rate_dot_1_leg2, -minus_rate_dot_1_leg2,
+                rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t159,
+                0.24 * (minus_rate_dot_1_leg2 + t159) - t107, t151 + t158 * t135,
+                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t158 - 1.0, t169), t232,
+                t232, t231 * rate_1_leg3, ::overact::math::signed(t231, rate_1_leg3), t231, t252,
+                -(t107 + 0.24 * (t232 + t252)), -(t231 * t244 + t251 * t218), 0.0576 * t232,
+                ::overact::math::signed(t251 - t231, t268), -t106,
             ],
         ])
     }
@@ -1777,7 +1753,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 325 operations (118 additions, 198 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 294 intermediates.
+    /// 320 operations (116 additions, 194 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 289 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1799,176 +1775,174 @@ impl ThreeLegPoint {
         let t11 = 0.5 * pose[0] + t0 * t6;
         let t12 = t11 - pose[0];
         let minus_g1_vx_leg1 = t12 * t8;
-        let t15 = pose[0] + 0.3031088913245535;
         let t17 = pose[1] + 0.175;
         let t18 = 0.5 * t17;
-        let t19 = 0.8660254037844386 * t15 + t18;
-        let t21 = 0.8660254037844386 * t17;
-        let t22 = 0.5 * t15 - t21;
-        let t25 = t19 * t19 + t22 * t22;
-        let t27 = 0.0576 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t31 = t22 * t28 - 0.5 * t19;
-        let t32 = t19 + t31;
-        let t36 = 0.5 * t22 + t19 * t28;
-        let t37 = t22 - t36;
-        let t39 = 3.608439182435161 * t32 + 2.0833333333333335 * t37;
-        let t40 = t25 * t28;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let g1_vx_leg2 = t39 * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t18;
-        let t50 = 0.5 * t45 + t21;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t47 + t50 * t56;
-        let t59 = t47 - t58;
-        let t63 = 0.5 * t50 - t47 * t56;
-        let t64 = t50 - t63;
-        let t66 = 3.608439182435161 * t59 + 2.0833333333333335 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let g1_vx_leg3 = t66 * t68;
-        let t71 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t19 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t18;
+        let t20 = pose[0] - 0.3031088913245535;
+        let t23 = 0.5 * t20 + 0.8660254037844386 * t17;
+        let t24 = pose[0] - t23;
+        let t27 = t19 * t19 + t24 * t24;
+        let t29 = 0.0576 / t27 - 0.25;
+        ::overact::guard::reach(t29, "leg2")?;
+        let t30 = ::overact::math::sqrt(t29);
+        let t33 = t24 * t30 - 0.5 * t19;
+        let t34 = t19 + t33;
+        let t38 = 0.5 * t24 + t19 * t30;
+        let t39 = t24 - t38;
+        let t41 = 3.608439182435161 * t34 + 2.0833333333333335 * t39;
+        let t42 = t27 * t30;
+        ::overact::guard::leg(t42, 0.05748423696979895, "leg2")?;
+        let t43 = 0.24 / t42;
+        let g1_vx_leg2 = t41 * t43;
+        let t48 = 0.8660254037844386 * t20 - t18;
+        let t52 = t48 * t48 + t23 * t23;
+        let t54 = 0.0576 / t52 - 0.25;
+        ::overact::guard::reach(t54, "leg3")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let t57 = 0.5 * t48 + t23 * t55;
+        let t58 = t48 - t57;
+        let t62 = 0.5 * t23 - t48 * t55;
+        let t63 = t23 - t62;
+        let t65 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
+        let t66 = t52 * t55;
+        ::overact::guard::leg(t66, 0.05748423696979895, "leg3")?;
+        let t67 = 0.24 / t66;
+        let g1_vx_leg3 = t65 * t67;
+        let t70 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t71, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t71, 26.146658848896372, "actuators")?;
-        let t72 = 1.0 / t71;
-        let t75 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
-        let g2_vy_leg2 = t75 * t41;
-        let t79 = 0.5 * t0 - pose[0] * t6;
-        let t80 = t0 - t79;
-        let g1_vy_leg1 = t80 * t8;
-        let t85 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
-        let minus_g1_vy_leg2 = t85 * t41;
-        let t91 = 2.0833333333333335 * t59 - 3.608439182435161 * t64;
-        let minus_g1_vy_leg3 = t91 * t68;
-        let t99 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t70, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t70, 26.146658848896372, "actuators")?;
+        let t71 = 1.0 / t70;
+        let t74 = 3.608439182435161 * t38 + 2.0833333333333335 * t33;
+        let g2_vy_leg2 = t74 * t43;
+        let t78 = 0.5 * t0 - pose[0] * t6;
+        let t79 = t0 - t78;
+        let g1_vy_leg1 = t79 * t8;
+        let t84 = 3.608439182435161 * t39 - 2.0833333333333335 * t34;
+        let minus_g1_vy_leg2 = t84 * t43;
+        let t90 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
+        let minus_g1_vy_leg3 = t90 * t67;
+        let t98 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t100 = t99 * t72;
-        let t102 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t99 * t100;
-        ::overact::guard::platform(t102, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t102, 26.146658848896372, "actuators")?;
-        let t103 = 1.0 / t102;
-        let t113 = g1_vx_leg2 * actuator_velocities[1]
+        let t99 = t98 * t71;
+        let t101 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t98 * t99;
+        ::overact::guard::platform(t101, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t101, 26.146658848896372, "actuators")?;
+        let t102 = 1.0 / t101;
+        let t112 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t116 = t103
+        let t115 = t102
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t113 * t100);
-        let t120 = 2.0833333333333335 * t36 - 3.608439182435161 * t31;
-        let minus_g2_vx_leg2 = t120 * t41;
-        let t124 = t113 * t72 + t100 * t116;
-        let rate_2_leg2 = g2_vy_leg2 * t116 - minus_g2_vx_leg2 * t124;
-        let t127 = rate_2_leg2 * rate_2_leg2;
-        let t128 = 0.24 * t127;
-        let rate_1_leg2 = g1_vx_leg2 * t124 - minus_g1_vy_leg2 * t116;
-        let t132 = rate_1_leg2 * rate_1_leg2;
-        let t134 = 2.0833333333333335 * (t25 - 0.1152);
-        let t135 = t132 * t134;
-        let rate_dot_1_leg2 = t41 * (t128 + t135);
-        let t138 = actuator_accelerations[1] - rate_dot_1_leg2;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t112 * t99);
+        let t119 = 2.0833333333333335 * t38 - 3.608439182435161 * t33;
+        let minus_g2_vx_leg2 = t119 * t43;
+        let t123 = t112 * t71 + t99 * t115;
+        let rate_2_leg2 = g2_vy_leg2 * t115 - minus_g2_vx_leg2 * t123;
+        let t126 = rate_2_leg2 * rate_2_leg2;
+        let t127 = 0.24 * t126;
+        let rate_1_leg2 = g1_vx_leg2 * t123 - minus_g1_vy_leg2 * t115;
+        let t131 = rate_1_leg2 * rate_1_leg2;
+        let t133 = 2.0833333333333335 * (t27 - 0.1152);
+        let t134 = t131 * t133;
+        let rate_dot_1_leg2 = t43 * (t127 + t134);
+        let t137 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg1 = t11 * t8;
-        let minus_g2_vy_leg1 = t79 * t8;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t124 + minus_g2_vy_leg1 * t116;
-        let t145 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t146 = 0.0576 * t145;
-        let rate_1_leg1 = g1_vy_leg1 * t116 - minus_g1_vx_leg1 * t124;
-        let t150 = rate_1_leg1 * rate_1_leg1;
-        let t152 = 0.5 * (t3 - 0.1152);
-        let t153 = t150 * t152;
-        let rate_dot_1_leg1 = t8 * (t146 + t153);
-        let t156 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t161 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let g2_vy_leg3 = t161 * t68;
-        let t166 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let minus_g2_vx_leg3 = t166 * t68;
-        let rate_2_leg3 = g2_vy_leg3 * t116 - minus_g2_vx_leg3 * t124;
-        let t170 = rate_2_leg3 * rate_2_leg3;
-        let t171 = 0.24 * t170;
-        let rate_1_leg3 = g1_vx_leg3 * t124 - minus_g1_vy_leg3 * t116;
-        let t175 = rate_1_leg3 * rate_1_leg3;
-        let t177 = 2.0833333333333335 * (t53 - 0.1152);
-        let t178 = t175 * t177;
-        let rate_dot_1_leg3 = t68 * (t171 + t178);
-        let t181 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t183 = g1_vx_leg2 * t138 - minus_g1_vx_leg1 * t156 + g1_vx_leg3 * t181;
-        let t192 = t103
-            * (g1_vy_leg1 * t156 - minus_g1_vy_leg2 * t138 - minus_g1_vy_leg3 * t181
-                + t100 * t183);
-        let t194 = t72 * t183 + t100 * t192;
-        let t198 = t12 * t194 - t80 * t192 - t146;
-        let minus_rate_dot_1_leg1 = t8 * (t198 - t153);
-        let t204 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t204, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t204, 15.09578052481963, "kept actuators")?;
-        let t205 = 1.0 / t204;
-        let t206 = minus_g1_vy_leg2 * t205;
-        let t208 = g1_vx_leg2 * t205;
-        let t210 = minus_g2_vx_leg1 * t206 + minus_g2_vy_leg1 * t208;
-        let t215 = t11 * t194 + t79 * t192 + 0.0576 * t150;
-        let minus_rate_dot_2_leg1 = t8 * (t215 + t145 * t152);
-        let t219 = t210 * minus_rate_dot_2_leg1;
-        let t220 = g1_vy_leg1 * t205;
-        let t222 = minus_g1_vx_leg1 * t205;
-        let t224 = minus_g2_vx_leg1 * t220 + minus_g2_vy_leg1 * t222;
-        let t225 = t224 * minus_rate_dot_2_leg1;
-        let t230 = t206 * t194 + t208 * t192;
-        let t231 = 4.166666666666667 * t230;
-        let t236 = t220 * t194 + t222 * t192;
-        let t237 = 4.166666666666667 * t236;
-        let t240 = 4.166666666666667 * t198;
-        let t246 = rate_1_leg1 + minus_rate_2_leg1;
-        let t252 = t85 * t192 - t39 * t194 - t128;
-        let minus_rate_dot_1_leg2 = t41 * (t252 - t135);
-        let t258 = minus_g2_vx_leg2 * t206 - g2_vy_leg2 * t208;
-        let t263 = t120 * t194 - t75 * t192 + 0.24 * t132;
-        let minus_rate_dot_2_leg2 = t41 * (t263 + t127 * t134);
-        let t267 = t258 * minus_rate_dot_2_leg2;
-        let t270 = minus_g2_vx_leg2 * t220 - g2_vy_leg2 * t222;
-        let t271 = t270 * minus_rate_dot_2_leg2;
-        let t281 = rate_2_leg2 - rate_1_leg2;
-        let t287 = minus_g1_vy_leg3 * t208 - g1_vx_leg3 * t206;
-        let t291 = t66 * t194 - t91 * t192 + t171;
-        let rate_dot_1_leg3_2 = t68 * (t291 + t178);
-        let t294 = t287 * rate_dot_1_leg3_2;
-        let t297 = minus_g1_vy_leg3 * t222 - g1_vx_leg3 * t220;
-        let t298 = t297 * rate_dot_1_leg3_2;
-        let t305 = minus_g2_vx_leg3 * t206 - g2_vy_leg3 * t208;
-        let t310 = t161 * t192 - t166 * t194 - 0.24 * t175;
-        let rate_dot_2_leg3 = t68 * (t310 - t170 * t177);
-        let t314 = t305 * rate_dot_2_leg3;
-        let t317 = minus_g2_vx_leg3 * t220 - g2_vy_leg3 * t222;
-        let t318 = t317 * rate_dot_2_leg3;
-        let t334 = rate_2_leg3 - rate_1_leg3;
+        let minus_g2_vy_leg1 = t78 * t8;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t123 + minus_g2_vy_leg1 * t115;
+        let t144 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t145 = 0.0576 * t144;
+        let rate_1_leg1 = g1_vy_leg1 * t115 - minus_g1_vx_leg1 * t123;
+        let t149 = rate_1_leg1 * rate_1_leg1;
+        let t151 = 0.5 * (t3 - 0.1152);
+        let t152 = t149 * t151;
+        let rate_dot_1_leg1 = t8 * (t145 + t152);
+        let t155 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t160 = 2.0833333333333335 * t57 - 3.608439182435161 * t62;
+        let g2_vy_leg3 = t160 * t67;
+        let t165 = 3.608439182435161 * t57 + 2.0833333333333335 * t62;
+        let minus_g2_vx_leg3 = t165 * t67;
+        let rate_2_leg3 = g2_vy_leg3 * t115 - minus_g2_vx_leg3 * t123;
+        let t169 = rate_2_leg3 * rate_2_leg3;
+        let t170 = 0.24 * t169;
+        let rate_1_leg3 = g1_vx_leg3 * t123 - minus_g1_vy_leg3 * t115;
+        let t174 = rate_1_leg3 * rate_1_leg3;
+        let t176 = 2.0833333333333335 * (t52 - 0.1152);
+        let t177 = t174 * t176;
+        let rate_dot_1_leg3 = t67 * (t170 + t177);
+        let t180 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t182 = g1_vx_leg2 * t137 - minus_g1_vx_leg1 * t155 + g1_vx_leg3 * t180;
+        let t191 = t102
+            * (g1_vy_leg1 * t155 - minus_g1_vy_leg2 * t137 - minus_g1_vy_leg3 * t180
+                + t99 * t182);
+        let t193 = t71 * t182 + t99 * t191;
+        let t197 = t12 * t193 - t79 * t191 - t145;
+        let minus_rate_dot_1_leg1 = t8 * (t197 - t152);
+        let t203 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(t203, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(t203, 15.09578052481963, "kept actuators")?;
+        let t204 = 1.0 / t203;
+        let t205 = minus_g1_vy_leg2 * t204;
+        let t207 = g1_vx_leg2 * t204;
+        let t209 = minus_g2_vx_leg1 * t205 + minus_g2_vy_leg1 * t207;
+        let t214 = t11 * t193 + t78 * t191 + 0.0576 * t149;
+        let minus_rate_dot_2_leg1 = t8 * (t214 + t144 * t151);
+        let t218 = t209 * minus_rate_dot_2_leg1;
+        let t219 = t8 * t204;
+        let t220 = t219 * minus_rate_dot_2_leg1;
+        let t225 = t205 * t193 + t207 * t191;
+        let t226 = 4.166666666666667 * t225;
+        let t229 = g1_vy_leg1 * t204;
+        let t231 = minus_g1_vx_leg1 * t204;
+        let t233 = t229 * t193 + t231 * t191;
+        let t234 = 4.166666666666667 * t233;
+        let t237 = 4.166666666666667 * t197;
+        let t243 = rate_1_leg1 + minus_rate_2_leg1;
+        let t249 = t84 * t191 - t41 * t193 - t127;
+        let minus_rate_dot_1_leg2 = t43 * (t249 - t134);
+        let t253 = t204 / t42;
+        let t258 = t119 * t193 - t74 * t191 + 0.24 * t131;
+        let minus_rate_dot_2_leg2 = t43 * (t258 + t126 * t133);
+        let t262 = t253 * minus_rate_dot_2_leg2;
+        let t265 = minus_g2_vx_leg2 * t229 - g2_vy_leg2 * t231;
+        let t266 = t265 * minus_rate_dot_2_leg2;
+        let t276 = rate_2_leg2 - rate_1_leg2;
+        let t282 = minus_g1_vy_leg3 * t207 - g1_vx_leg3 * t205;
+        let t286 = t65 * t193 - t90 * t191 + t170;
+        let rate_dot_1_leg3_2 = t67 * (t286 + t177);
+        let t289 = t282 * rate_dot_1_leg3_2;
+        let t292 = minus_g1_vy_leg3 * t231 - g1_vx_leg3 * t229;
+        let t293 = t292 * rate_dot_1_leg3_2;
+        let t300 = minus_g2_vx_leg3 * t205 - g2_vy_leg3 * t207;
+        let t305 = t160 * t191 - t165 * t193 - 0.24 * t174;
+        let rate_dot_2_leg3 = t67 * (t305 - t169 * t176);
+        let t309 = t300 * rate_dot_2_leg3;
+        let t312 = minus_g2_vx_leg3 * t229 - g2_vy_leg3 * t231;
+        let t313 = t312 * rate_dot_2_leg3;
+        let t329 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
-                ::overact::math::sign(rate_1_leg1), 1.0, -t219,
-                0.24 * (minus_rate_dot_1_leg1 + t219) - t231,
-                4.166666666666667 * t215 + t210 * t240, -(0.0576 * minus_rate_dot_1_leg1),
-                -::overact::math::signed(t210 - 1.0, t246), 0.0, 0.0, 0.0, 0.0, 0.0, -t267,
-                0.24 * t267 - t231, t258 * t252, 0.0, ::overact::math::signed(t258, t281), t294,
-                t294, t287 * rate_1_leg3, ::overact::math::signed(t287, rate_1_leg3), t287, t314,
-                -(t231 + 0.24 * (t294 + t314)), -(t287 * t310 + t305 * t291), 0.0576 * t294,
-                ::overact::math::signed(t305 - t287, t334), -t230,
+                ::overact::math::sign(rate_1_leg1), 1.0, -t218,
+                0.24 * (minus_rate_dot_1_leg1 + t218) - t226,
+                4.166666666666667 * t214 + t209 * t237, -(0.0576 * minus_rate_dot_1_leg1),
+                -::overact::math::signed(t209 - 1.0, t243), 0.0, 0.0, 0.0, 0.0, 0.0, t262,
+                -(0.24 * t262 + t226), -(t253 * t249), 0.0, -::overact::math::signed(t253, t276),
+                t289, t289, t282 * rate_1_leg3, ::overact::math::signed(t282, rate_1_leg3), t282,
+                t309, -(t226 + 0.24 * (t289 + t309)), -(t282 * t305 + t300 * t286), 0.0576 * t289,
+                ::overact::math::signed(t300 - t282, t329), -t225,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t225, 0.24 * t225 - t237, t224 * t240, 0.0,
-                -::overact::math::signed(t224, t246), -minus_rate_dot_1_leg2,
-                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t271,
-                0.24 * (minus_rate_dot_1_leg2 + t271) - t237, t263 + t270 * t252,
-                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t270 - 1.0, t281), t298,
-                t298, t297 * rate_1_leg3, ::overact::math::signed(t297, rate_1_leg3), t297, t318,
-                -(t237 + 0.24 * (t298 + t318)), -(t297 * t310 + t317 * t291), 0.0576 * t298,
-                ::overact::math::signed(t317 - t297, t334), -t236,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t220, 0.24 * t220 - t234, t219 * t237, 0.0,
+                -::overact::math::signed(t219, t243), -minus_rate_dot_1_leg2,
+                -minus_rate_dot_1_leg2, rate_1_leg2, ::overact::math::sign(rate_1_leg2), 1.0, -t266,
+                0.24 * (minus_rate_dot_1_leg2 + t266) - t234, t258 + t265 * t249,
+                -(0.0576 * minus_rate_dot_1_leg2), ::overact::math::signed(t265 - 1.0, t276), t293,
+                t293, t292 * rate_1_leg3, ::overact::math::signed(t292, rate_1_leg3), t292, t313,
+                -(t234 + 0.24 * (t293 + t313)), -(t292 * t305 + t312 * t286), 0.0576 * t293,
+                ::overact::math::signed(t312 - t292, t329), -t233,
             ],
         ])
     }
@@ -1982,7 +1956,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 220 operations (76 additions, 138 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 193 intermediates.
+    /// 213 operations (75 additions, 132 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 186 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1991,12 +1965,13 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * pose[0] + t1 * t7;
+        let t9 = t0 + t1 * t7;
         let t10 = t9 - pose[0];
         let t11 = t4 * t7;
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
@@ -2016,11 +1991,10 @@ impl ThreeLegPoint {
         let t35 = 0.5 * (t4 - 0.1152);
         let minus_rate_dot_1_leg1 = t12 * (t28 - t33 * t35);
         let t41 = pose[0] + 0.3031088913245535;
-        let t43 = pose[1] + 0.175;
-        let t44 = 0.5 * t43;
+        let t44 = 0.5 * (pose[1] + 0.175);
         let t45 = 0.8660254037844386 * t41 + t44;
-        let t47 = 0.8660254037844386 * t43;
-        let t48 = 0.5 * t41 - t47;
+        let t47 = t0 + pose[1] * 0.8660254037844386;
+        let t48 = pose[0] - t47;
         let t51 = t45 * t45 + t48 * t48;
         let t53 = 0.0576 / t51 - 0.25;
         ::overact::guard::reach(t53, "leg2")?;
@@ -2037,56 +2011,53 @@ impl ThreeLegPoint {
         let t71 = 3.608439182435161 * t63 - 2.0833333333333335 * t58;
         let t77 = 3.608439182435161 * t62 + 2.0833333333333335 * t57;
         let g2_vy_leg2 = t77 * t67;
-        let t82 = 2.0833333333333335 * t62 - 3.608439182435161 * t57;
-        let minus_g2_vx_leg2 = t82 * t67;
+        let t81 = t41 * 4.166666666666667 - t65;
+        let minus_g2_vx_leg2 = t81 * t67;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t86 = rate_2_leg2 * rate_2_leg2;
-        let t88 = t71 * acceleration[1] - t65 * acceleration[0] - 0.24 * t86;
+        let t85 = rate_2_leg2 * rate_2_leg2;
+        let t87 = t71 * acceleration[1] - t65 * acceleration[0] - 0.24 * t85;
         let minus_g1_vy_leg2 = t71 * t67;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t93 = rate_1_leg2 * rate_1_leg2;
-        let t95 = 2.0833333333333335 * (t51 - 0.1152);
-        let minus_rate_dot_1_leg2 = t67 * (t88 - t93 * t95);
-        let t101 = pose[0] - 0.3031088913245535;
-        let t103 = 0.8660254037844386 * t101 - t44;
-        let t106 = 0.5 * t101 + t47;
-        let t109 = t103 * t103 + t106 * t106;
-        let t111 = 0.0576 / t109 - 0.25;
-        ::overact::guard::reach(t111, "leg3")?;
-        let t112 = ::overact::math::sqrt(t111);
-        let t114 = 0.5 * t103 + t106 * t112;
-        let t115 = t103 - t114;
-        let t119 = 0.5 * t106 - t103 * t112;
-        let t120 = t106 - t119;
-        let t122 = 3.608439182435161 * t115 + 2.0833333333333335 * t120;
-        let t123 = t109 * t112;
-        ::overact::guard::leg(t123, 0.05748423696979895, "leg3")?;
-        let t124 = 0.24 / t123;
-        let g1_vx_leg3 = t122 * t124;
-        let t129 = 2.0833333333333335 * t115 - 3.608439182435161 * t120;
-        let t134 = 2.0833333333333335 * t114 - 3.608439182435161 * t119;
-        let g2_vy_leg3 = t134 * t124;
-        let t139 = 3.608439182435161 * t114 + 2.0833333333333335 * t119;
-        let minus_g2_vx_leg3 = t139 * t124;
+        let t92 = rate_1_leg2 * rate_1_leg2;
+        let t94 = 2.0833333333333335 * (t51 - 0.1152);
+        let minus_rate_dot_1_leg2 = t67 * (t87 - t92 * t94);
+        let t100 = pose[0] - 0.3031088913245535;
+        let t102 = 0.8660254037844386 * t100 - t44;
+        let t106 = t102 * t102 + t47 * t47;
+        let t108 = 0.0576 / t106 - 0.25;
+        ::overact::guard::reach(t108, "leg3")?;
+        let t109 = ::overact::math::sqrt(t108);
+        let t111 = 0.5 * t102 - t47 * t109;
+        let t115 = 0.5 * t47 + t102 * t109;
+        let t117 = 3.608439182435161 * t111 + 2.0833333333333335 * t115;
+        let t118 = t106 * t109;
+        ::overact::guard::leg(t118, 0.05748423696979895, "leg3")?;
+        let t119 = 0.24 / t118;
+        let g1_vx_leg3 = t117 * t119;
+        let t124 = 2.0833333333333335 * t111 - 3.608439182435161 * t115;
+        let t128 = t71 + t77 - t124;
+        let g2_vy_leg3 = t128 * t119;
+        let t132 = t100 * 4.166666666666667 - t117;
+        let minus_g2_vx_leg3 = t132 * t119;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t143 = rate_2_leg3 * rate_2_leg3;
-        let t145 = t122 * acceleration[0] - t129 * acceleration[1] + 0.24 * t143;
-        let minus_g1_vy_leg3 = t129 * t124;
+        let t136 = rate_2_leg3 * rate_2_leg3;
+        let t138 = t117 * acceleration[0] - t124 * acceleration[1] + 0.24 * t136;
+        let minus_g1_vy_leg3 = t124 * t119;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t150 = rate_1_leg3 * rate_1_leg3;
-        let t152 = 2.0833333333333335 * (t109 - 0.1152);
-        let rate_dot_1_leg3 = t124 * (t145 + t150 * t152);
-        let t174 = t9 * acceleration[0] + t17 * acceleration[1] + 0.0576 * t33;
-        let minus_rate_dot_2_leg1 = t12 * (t174 + t26 * t35);
-        let t184 = t82 * acceleration[0] - t77 * acceleration[1] + 0.24 * t93;
-        let minus_rate_dot_2_leg2 = t67 * (t184 + t86 * t95);
-        let t194 = t134 * acceleration[1] - t139 * acceleration[0] - 0.24 * t150;
-        let rate_dot_2_leg3 = t124 * (t194 - t143 * t152);
-        let t200 = 4.166666666666667 * t174;
-        let t202 = 4.166666666666667 * t28;
-        let t221 = rate_1_leg1 + minus_rate_2_leg1;
-        let t226 = rate_2_leg2 - rate_1_leg2;
-        let t231 = rate_2_leg3 - rate_1_leg3;
+        let t143 = rate_1_leg3 * rate_1_leg3;
+        let t145 = 2.0833333333333335 * (t106 - 0.1152);
+        let rate_dot_1_leg3 = t119 * (t138 + t143 * t145);
+        let t167 = t9 * acceleration[0] + t17 * acceleration[1] + 0.0576 * t33;
+        let minus_rate_dot_2_leg1 = t12 * (t167 + t26 * t35);
+        let t177 = t81 * acceleration[0] - t77 * acceleration[1] + 0.24 * t92;
+        let minus_rate_dot_2_leg2 = t67 * (t177 + t85 * t94);
+        let t187 = t128 * acceleration[1] - t132 * acceleration[0] - 0.24 * t143;
+        let rate_dot_2_leg3 = t119 * (t187 - t136 * t145);
+        let t193 = 4.166666666666667 * t167;
+        let t195 = 4.166666666666667 * t28;
+        let t214 = rate_1_leg1 + minus_rate_2_leg1;
+        let t219 = rate_2_leg2 - rate_1_leg2;
+        let t224 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
@@ -2097,12 +2068,12 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                -(minus_g1_vx_leg1 * t200 + minus_g2_vx_leg1 * t202),
-                g1_vx_leg2 * t184 - minus_g2_vx_leg2 * t88,
-                minus_g2_vx_leg3 * t145 - g1_vx_leg3 * t194,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t221),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t226),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t231),
+                -(minus_g1_vx_leg1 * t193 + minus_g2_vx_leg1 * t195),
+                g1_vx_leg2 * t177 - minus_g2_vx_leg2 * t87,
+                minus_g2_vx_leg3 * t138 - g1_vx_leg3 * t187,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t214),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t219),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t224),
             ],
             [
                 acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2113,12 +2084,12 @@ impl ThreeLegPoint {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t200 - minus_g2_vy_leg1 * t202,
-                g2_vy_leg2 * t88 - minus_g1_vy_leg2 * t184,
-                minus_g1_vy_leg3 * t194 - g2_vy_leg3 * t145,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t221),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t226),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t231),
+                g1_vy_leg1 * t193 - minus_g2_vy_leg1 * t195,
+                g2_vy_leg2 * t87 - minus_g1_vy_leg2 * t177,
+                minus_g1_vy_leg3 * t187 - g2_vy_leg3 * t138,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t214),
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t219),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t224),
             ],
         ])
     }
@@ -2255,7 +2226,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 281 operations (101 additions, 172 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 252 intermediates.
+    /// 274 operations (100 additions, 166 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 245 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2266,23 +2237,23 @@ impl ThreeLegPoint {
         start: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
+        let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t9 = 0.5 * pose[0] + t1 * t7;
+        let t9 = t0 + t1 * t7;
         let t10 = t9 - pose[0];
         let t11 = t4 * t7;
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
         let t12 = 1.0 / t11;
         let minus_g1_vx_leg1 = t10 * t12;
         let t15 = pose[0] + 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t18 = 0.5 * t17;
+        let t18 = 0.5 * (pose[1] + 0.175);
         let t19 = 0.8660254037844386 * t15 + t18;
-        let t21 = 0.8660254037844386 * t17;
-        let t22 = 0.5 * t15 - t21;
+        let t21 = t0 + pose[1] * 0.8660254037844386;
+        let t22 = pose[0] - t21;
         let t25 = t19 * t19 + t22 * t22;
         let t27 = 0.0576 / t25 - 0.25;
         ::overact::guard::reach(t27, "leg2")?;
@@ -2298,110 +2269,107 @@ impl ThreeLegPoint {
         let g1_vx_leg2 = t39 * t41;
         let t45 = pose[0] - 0.3031088913245535;
         let t47 = 0.8660254037844386 * t45 - t18;
-        let t50 = 0.5 * t45 + t21;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t47 + t50 * t56;
-        let t59 = t47 - t58;
-        let t63 = 0.5 * t50 - t47 * t56;
-        let t64 = t50 - t63;
-        let t66 = 3.608439182435161 * t59 + 2.0833333333333335 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let g1_vx_leg3 = t66 * t68;
-        let t71 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t51 = t47 * t47 + t21 * t21;
+        let t53 = 0.0576 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg3")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t56 = 0.5 * t47 - t21 * t54;
+        let t60 = 0.5 * t21 + t47 * t54;
+        let t62 = 3.608439182435161 * t56 + 2.0833333333333335 * t60;
+        let t63 = t51 * t54;
+        ::overact::guard::leg(t63, 0.05748423696979895, "leg3")?;
+        let t64 = 0.24 / t63;
+        let g1_vx_leg3 = t62 * t64;
+        let t67 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t71, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t71, 26.146658848896372, "actuators")?;
-        let t72 = 1.0 / t71;
-        let t75 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
-        let g2_vy_leg2 = t75 * t41;
-        let t79 = 0.5 * t1 - pose[0] * t7;
-        let t80 = t1 - t79;
-        let g1_vy_leg1 = t80 * t12;
-        let t85 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
-        let minus_g1_vy_leg2 = t85 * t41;
-        let t91 = 2.0833333333333335 * t59 - 3.608439182435161 * t64;
-        let minus_g1_vy_leg3 = t91 * t68;
-        let t99 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
+        let t68 = 1.0 / t67;
+        let t71 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
+        let g2_vy_leg2 = t71 * t41;
+        let t75 = 0.5 * t1 - pose[0] * t7;
+        let t76 = t1 - t75;
+        let g1_vy_leg1 = t76 * t12;
+        let t81 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
+        let minus_g1_vy_leg2 = t81 * t41;
+        let t87 = 2.0833333333333335 * t56 - 3.608439182435161 * t60;
+        let minus_g1_vy_leg3 = t87 * t64;
+        let t95 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t100 = t99 * t72;
-        let t102 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t99 * t100;
-        ::overact::guard::platform(t102, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t102, 26.146658848896372, "actuators")?;
-        let t103 = 1.0 / t102;
-        let t113 = g1_vx_leg2 * actuator_velocities[1]
+        let t96 = t95 * t68;
+        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t95 * t96;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        let t99 = 1.0 / t98;
+        let t109 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t116 = t103
+        let t112 = t99
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t113 * t100);
-        let t120 = 2.0833333333333335 * t36 - 3.608439182435161 * t31;
-        let minus_g2_vx_leg2 = t120 * t41;
-        let t124 = t113 * t72 + t100 * t116;
-        let rate_2_leg2 = g2_vy_leg2 * t116 - minus_g2_vx_leg2 * t124;
-        let t127 = rate_2_leg2 * rate_2_leg2;
-        let t128 = 0.24 * t127;
-        let rate_1_leg2 = g1_vx_leg2 * t124 - minus_g1_vy_leg2 * t116;
-        let t132 = rate_1_leg2 * rate_1_leg2;
-        let t134 = 2.0833333333333335 * (t25 - 0.1152);
-        let t135 = t132 * t134;
-        let rate_dot_1_leg2 = t41 * (t128 + t135);
-        let t138 = actuator_accelerations[1] - rate_dot_1_leg2;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t109 * t96);
+        let t115 = t15 * 4.166666666666667 - t39;
+        let minus_g2_vx_leg2 = t115 * t41;
+        let t119 = t109 * t68 + t96 * t112;
+        let rate_2_leg2 = g2_vy_leg2 * t112 - minus_g2_vx_leg2 * t119;
+        let t122 = rate_2_leg2 * rate_2_leg2;
+        let t123 = 0.24 * t122;
+        let rate_1_leg2 = g1_vx_leg2 * t119 - minus_g1_vy_leg2 * t112;
+        let t127 = rate_1_leg2 * rate_1_leg2;
+        let t129 = 2.0833333333333335 * (t25 - 0.1152);
+        let t130 = t127 * t129;
+        let rate_dot_1_leg2 = t41 * (t123 + t130);
+        let t133 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t79 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t124 + minus_g2_vy_leg1 * t116;
-        let t145 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t146 = 0.0576 * t145;
-        let rate_1_leg1 = g1_vy_leg1 * t116 - minus_g1_vx_leg1 * t124;
-        let t150 = rate_1_leg1 * rate_1_leg1;
-        let t152 = 0.5 * (t4 - 0.1152);
-        let t153 = t150 * t152;
-        let rate_dot_1_leg1 = t12 * (t146 + t153);
-        let t156 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t161 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let g2_vy_leg3 = t161 * t68;
-        let t166 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let minus_g2_vx_leg3 = t166 * t68;
-        let rate_2_leg3 = g2_vy_leg3 * t116 - minus_g2_vx_leg3 * t124;
-        let t170 = rate_2_leg3 * rate_2_leg3;
-        let t171 = 0.24 * t170;
-        let rate_1_leg3 = g1_vx_leg3 * t124 - minus_g1_vy_leg3 * t116;
-        let t175 = rate_1_leg3 * rate_1_leg3;
-        let t177 = 2.0833333333333335 * (t53 - 0.1152);
-        let t178 = t175 * t177;
-        let rate_dot_1_leg3 = t68 * (t171 + t178);
-        let t181 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t183 = g1_vx_leg2 * t138 - minus_g1_vx_leg1 * t156 + g1_vx_leg3 * t181;
-        let t192 = t103
-            * (g1_vy_leg1 * t156 - minus_g1_vy_leg2 * t138 - minus_g1_vy_leg3 * t181
-                + t100 * t183);
-        let t194 = t72 * t183 + t100 * t192;
-        let t198 = t10 * t194 - t80 * t192 - t146;
-        let minus_rate_dot_1_leg1 = t12 * (t198 - t153);
-        let t206 = t85 * t192 - t39 * t194 - t128;
-        let minus_rate_dot_1_leg2 = t41 * (t206 - t135);
-        let t214 = t66 * t194 - t91 * t192 + t171;
-        let rate_dot_1_leg3_2 = t68 * (t214 + t178);
-        let t235 = t9 * t194 + t79 * t192 + 0.0576 * t150;
-        let minus_rate_dot_2_leg1 = t12 * (t235 + t145 * t152);
-        let t245 = t120 * t194 - t75 * t192 + 0.24 * t132;
-        let minus_rate_dot_2_leg2 = t41 * (t245 + t127 * t134);
-        let t255 = t161 * t192 - t166 * t194 - 0.24 * t175;
-        let rate_dot_2_leg3 = t68 * (t255 - t170 * t177);
-        let t261 = 4.166666666666667 * t235;
-        let t263 = 4.166666666666667 * t198;
-        let t282 = rate_1_leg1 + minus_rate_2_leg1;
-        let t287 = rate_2_leg2 - rate_1_leg2;
-        let t292 = rate_2_leg3 - rate_1_leg3;
+        let minus_g2_vy_leg1 = t75 * t12;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t119 + minus_g2_vy_leg1 * t112;
+        let t140 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t141 = 0.0576 * t140;
+        let rate_1_leg1 = g1_vy_leg1 * t112 - minus_g1_vx_leg1 * t119;
+        let t145 = rate_1_leg1 * rate_1_leg1;
+        let t147 = 0.5 * (t4 - 0.1152);
+        let t148 = t145 * t147;
+        let rate_dot_1_leg1 = t12 * (t141 + t148);
+        let t151 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t155 = t71 + t81 - t87;
+        let g2_vy_leg3 = t155 * t64;
+        let t159 = t45 * 4.166666666666667 - t62;
+        let minus_g2_vx_leg3 = t159 * t64;
+        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t119;
+        let t163 = rate_2_leg3 * rate_2_leg3;
+        let t164 = 0.24 * t163;
+        let rate_1_leg3 = g1_vx_leg3 * t119 - minus_g1_vy_leg3 * t112;
+        let t168 = rate_1_leg3 * rate_1_leg3;
+        let t170 = 2.0833333333333335 * (t51 - 0.1152);
+        let t171 = t168 * t170;
+        let rate_dot_1_leg3 = t64 * (t164 + t171);
+        let t174 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t176 = g1_vx_leg2 * t133 - minus_g1_vx_leg1 * t151 + g1_vx_leg3 * t174;
+        let t185 = t99
+            * (g1_vy_leg1 * t151 - minus_g1_vy_leg2 * t133 - minus_g1_vy_leg3 * t174
+                + t96 * t176);
+        let t187 = t68 * t176 + t96 * t185;
+        let t191 = t10 * t187 - t76 * t185 - t141;
+        let minus_rate_dot_1_leg1 = t12 * (t191 - t148);
+        let t199 = t81 * t185 - t39 * t187 - t123;
+        let minus_rate_dot_1_leg2 = t41 * (t199 - t130);
+        let t207 = t62 * t187 - t87 * t185 + t164;
+        let rate_dot_1_leg3_2 = t64 * (t207 + t171);
+        let t228 = t9 * t187 + t75 * t185 + 0.0576 * t145;
+        let minus_rate_dot_2_leg1 = t12 * (t228 + t140 * t147);
+        let t238 = t115 * t187 - t71 * t185 + 0.24 * t127;
+        let minus_rate_dot_2_leg2 = t41 * (t238 + t122 * t129);
+        let t248 = t155 * t185 - t159 * t187 - 0.24 * t168;
+        let rate_dot_2_leg3 = t64 * (t248 - t163 * t170);
+        let t254 = 4.166666666666667 * t228;
+        let t256 = 4.166666666666667 * t191;
+        let t275 = rate_1_leg1 + minus_rate_2_leg1;
+        let t280 = rate_2_leg2 - rate_1_leg2;
+        let t285 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
-                t194, minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
+                t187, minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3_2,
                 -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
                 g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
@@ -2409,15 +2377,15 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                -(minus_g1_vx_leg1 * t261 + minus_g2_vx_leg1 * t263),
-                g1_vx_leg2 * t245 - minus_g2_vx_leg2 * t206,
-                minus_g2_vx_leg3 * t214 - g1_vx_leg3 * t255,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t282),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t287),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t292),
+                -(minus_g1_vx_leg1 * t254 + minus_g2_vx_leg1 * t256),
+                g1_vx_leg2 * t238 - minus_g2_vx_leg2 * t199,
+                minus_g2_vx_leg3 * t207 - g1_vx_leg3 * t248,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t275),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t280),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t285),
             ],
             [
-                t192, -(g1_vy_leg1 * minus_rate_dot_1_leg1),
+                t185, -(g1_vy_leg1 * minus_rate_dot_1_leg1),
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3_2),
                 g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
                 -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
@@ -2425,12 +2393,12 @@ impl ThreeLegPoint {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t261 - minus_g2_vy_leg1 * t263,
-                g2_vy_leg2 * t206 - minus_g1_vy_leg2 * t245,
-                minus_g1_vy_leg3 * t255 - g2_vy_leg3 * t214,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t282),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t287),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t292),
+                g1_vy_leg1 * t254 - minus_g2_vy_leg1 * t256,
+                g2_vy_leg2 * t199 - minus_g1_vy_leg2 * t238,
+                minus_g1_vy_leg3 * t248 - g2_vy_leg3 * t207,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t275),
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t280),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t285),
             ],
         ])
     }
@@ -2444,7 +2412,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 242 operations (83 additions, 152 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 221 intermediates.
+    /// 237 operations (81 additions, 148 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 216 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2453,136 +2421,134 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         acceleration: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.3031088913245535;
+        let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
-        let t3 = 0.8660254037844386 * t2;
-        let t4 = 0.5 * t0 - t3;
-        let t7 = 0.5 * t2;
-        let t8 = 0.8660254037844386 * t0 + t7;
-        let t11 = t8 * t8 + t4 * t4;
-        let t13 = 0.0576 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg2")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t21 = t4 * t14 - 0.5 * t8;
-        let t22 = t8 + t21;
-        let t24 = 3.608439182435161 * t17 - 2.0833333333333335 * t22;
-        let t25 = t11 * t14;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let minus_g1_vy_leg2 = t24 * t26;
-        let t29 = pose[1] - 0.35;
-        let t32 = t29 * t29 + pose[0] * pose[0];
-        let t34 = 0.0576 / t32 - 0.25;
-        ::overact::guard::reach(t34, "leg1")?;
-        let t35 = ::overact::math::sqrt(t34);
-        let t37 = 0.5 * pose[0] + t29 * t35;
-        let t38 = t37 - pose[0];
-        let t39 = t32 * t35;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg1")?;
-        let t40 = 1.0 / t39;
-        let minus_g1_vx_leg1 = t38 * t40;
-        let t45 = 0.5 * t29 - pose[0] * t35;
-        let t46 = t29 - t45;
-        let g1_vy_leg1 = t46 * t40;
-        let t50 = 3.608439182435161 * t22 + 2.0833333333333335 * t17;
-        let g1_vx_leg2 = t50 * t26;
-        let t53 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t53, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t53, 15.09578052481963, "kept actuators")?;
-        let t54 = 1.0 / t53;
-        let t55 = minus_g1_vy_leg2 * t54;
-        let t57 = g1_vx_leg2 * t54;
-        let t60 = g1_vy_leg1 * t54;
-        let t62 = minus_g1_vx_leg1 * t54;
-        let minus_g2_vx_leg1 = t37 * t40;
-        let minus_g2_vy_leg1 = t45 * t40;
+        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
+        let t5 = pose[0] - t4;
+        let t9 = 0.5 * t2;
+        let t10 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t9;
+        let t13 = t10 * t10 + t5 * t5;
+        let t15 = 0.0576 / t13 - 0.25;
+        ::overact::guard::reach(t15, "leg2")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let t18 = 0.5 * t5 + t10 * t16;
+        let t19 = t5 - t18;
+        let t23 = t5 * t16 - 0.5 * t10;
+        let t24 = t10 + t23;
+        let t26 = 3.608439182435161 * t19 - 2.0833333333333335 * t24;
+        let t27 = t13 * t16;
+        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
+        let t28 = 0.24 / t27;
+        let minus_g1_vy_leg2 = t26 * t28;
+        let t31 = pose[1] - 0.35;
+        let t34 = t31 * t31 + pose[0] * pose[0];
+        let t36 = 0.0576 / t34 - 0.25;
+        ::overact::guard::reach(t36, "leg1")?;
+        let t37 = ::overact::math::sqrt(t36);
+        let t39 = 0.5 * pose[0] + t31 * t37;
+        let t40 = t39 - pose[0];
+        let t41 = t34 * t37;
+        ::overact::guard::leg(t41, 0.05748423696979895, "leg1")?;
+        let t42 = 1.0 / t41;
+        let minus_g1_vx_leg1 = t40 * t42;
+        let t47 = 0.5 * t31 - pose[0] * t37;
+        let t48 = t31 - t47;
+        let g1_vy_leg1 = t48 * t42;
+        let t52 = 3.608439182435161 * t24 + 2.0833333333333335 * t19;
+        let g1_vx_leg2 = t52 * t28;
+        let t55 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
+        let t56 = 1.0 / t55;
+        let t57 = minus_g1_vy_leg2 * t56;
+        let t59 = g1_vx_leg2 * t56;
+        let t62 = g1_vy_leg1 * t56;
+        let t64 = minus_g1_vx_leg1 * t56;
+        let minus_g2_vx_leg1 = t39 * t42;
+        let minus_g2_vy_leg1 = t47 * t42;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t73 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t75 = t38 * acceleration[0] - t46 * acceleration[1] - 0.0576 * t73;
+        let t75 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t77 = t40 * acceleration[0] - t48 * acceleration[1] - 0.0576 * t75;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t79 = rate_1_leg1 * rate_1_leg1;
-        let t81 = 0.5 * (t32 - 0.1152);
-        let minus_rate_dot_1_leg1 = t40 * (t75 - t79 * t81);
-        let t90 = 3.608439182435161 * t16 + 2.0833333333333335 * t21;
-        let g2_vy_leg2 = t90 * t26;
-        let t95 = 2.0833333333333335 * t16 - 3.608439182435161 * t21;
-        let minus_g2_vx_leg2 = t95 * t26;
+        let t81 = rate_1_leg1 * rate_1_leg1;
+        let t83 = 0.5 * (t34 - 0.1152);
+        let minus_rate_dot_1_leg1 = t42 * (t77 - t81 * t83);
+        let t92 = 3.608439182435161 * t18 + 2.0833333333333335 * t23;
+        let g2_vy_leg2 = t92 * t28;
+        let t97 = 2.0833333333333335 * t18 - 3.608439182435161 * t23;
+        let minus_g2_vx_leg2 = t97 * t28;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t99 = rate_2_leg2 * rate_2_leg2;
-        let t101 = t24 * acceleration[1] - t50 * acceleration[0] - 0.24 * t99;
+        let t101 = rate_2_leg2 * rate_2_leg2;
+        let t103 = t26 * acceleration[1] - t52 * acceleration[0] - 0.24 * t101;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t105 = rate_1_leg2 * rate_1_leg2;
-        let t107 = 2.0833333333333335 * (t11 - 0.1152);
-        let minus_rate_dot_1_leg2 = t26 * (t101 - t105 * t107);
-        let t111 = pose[0] - 0.3031088913245535;
-        let t113 = 0.8660254037844386 * t111 - t7;
-        let t116 = 0.5 * t111 + t3;
-        let t119 = t113 * t113 + t116 * t116;
-        let t121 = 0.0576 / t119 - 0.25;
-        ::overact::guard::reach(t121, "leg3")?;
-        let t122 = ::overact::math::sqrt(t121);
-        let t124 = 0.5 * t113 + t116 * t122;
-        let t125 = t113 - t124;
-        let t129 = 0.5 * t116 - t113 * t122;
-        let t130 = t116 - t129;
-        let t132 = 2.0833333333333335 * t125 - 3.608439182435161 * t130;
-        let t133 = t119 * t122;
-        ::overact::guard::leg(t133, 0.05748423696979895, "leg3")?;
-        let t134 = 0.24 / t133;
-        let minus_g1_vy_leg3 = t132 * t134;
-        let t139 = 3.608439182435161 * t125 + 2.0833333333333335 * t130;
-        let g1_vx_leg3 = t139 * t134;
-        let t142 = minus_g1_vy_leg3 * t57 - g1_vx_leg3 * t55;
-        let t148 = 2.0833333333333335 * t124 - 3.608439182435161 * t129;
-        let g2_vy_leg3 = t148 * t134;
-        let t153 = 3.608439182435161 * t124 + 2.0833333333333335 * t129;
-        let minus_g2_vx_leg3 = t153 * t134;
+        let t107 = rate_1_leg2 * rate_1_leg2;
+        let t109 = 2.0833333333333335 * (t13 - 0.1152);
+        let minus_rate_dot_1_leg2 = t28 * (t103 - t107 * t109);
+        let t114 = 0.8660254037844386 * t0 - t9;
+        let t118 = t114 * t114 + t4 * t4;
+        let t120 = 0.0576 / t118 - 0.25;
+        ::overact::guard::reach(t120, "leg3")?;
+        let t121 = ::overact::math::sqrt(t120);
+        let t123 = 0.5 * t114 + t4 * t121;
+        let t124 = t114 - t123;
+        let t128 = 0.5 * t4 - t114 * t121;
+        let t129 = t4 - t128;
+        let t131 = 2.0833333333333335 * t124 - 3.608439182435161 * t129;
+        let t132 = t118 * t121;
+        ::overact::guard::leg(t132, 0.05748423696979895, "leg3")?;
+        let t133 = 0.24 / t132;
+        let minus_g1_vy_leg3 = t131 * t133;
+        let t138 = 3.608439182435161 * t124 + 2.0833333333333335 * t129;
+        let g1_vx_leg3 = t138 * t133;
+        let t141 = minus_g1_vy_leg3 * t59 - g1_vx_leg3 * t57;
+        let t147 = 2.0833333333333335 * t123 - 3.608439182435161 * t128;
+        let g2_vy_leg3 = t147 * t133;
+        let t152 = 3.608439182435161 * t123 + 2.0833333333333335 * t128;
+        let minus_g2_vx_leg3 = t152 * t133;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t157 = rate_2_leg3 * rate_2_leg3;
-        let t159 = t139 * acceleration[0] - t132 * acceleration[1] + 0.24 * t157;
+        let t156 = rate_2_leg3 * rate_2_leg3;
+        let t158 = t138 * acceleration[0] - t131 * acceleration[1] + 0.24 * t156;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t163 = rate_1_leg3 * rate_1_leg3;
-        let t165 = 2.0833333333333335 * (t119 - 0.1152);
-        let rate_dot_1_leg3 = t134 * (t159 + t163 * t165);
-        let t172 = minus_g1_vy_leg3 * t62 - g1_vx_leg3 * t60;
-        let t182 = minus_g2_vx_leg1 * t55 + minus_g2_vy_leg1 * t57;
-        let t187 = t37 * acceleration[0] + t45 * acceleration[1] + 0.0576 * t79;
-        let minus_rate_dot_2_leg1 = t40 * (t187 + t73 * t81);
-        let t194 = minus_g2_vx_leg1 * t60 + minus_g2_vy_leg1 * t62;
-        let t198 = minus_g2_vx_leg2 * t55 - g2_vy_leg2 * t57;
-        let t203 = t95 * acceleration[0] - t90 * acceleration[1] + 0.24 * t105;
-        let minus_rate_dot_2_leg2 = t26 * (t203 + t99 * t107);
-        let t210 = minus_g2_vx_leg2 * t60 - g2_vy_leg2 * t62;
-        let t214 = minus_g2_vx_leg3 * t55 - g2_vy_leg3 * t57;
-        let t219 = t148 * acceleration[1] - t153 * acceleration[0] - 0.24 * t163;
-        let rate_dot_2_leg3 = t134 * (t219 - t157 * t165);
-        let t226 = minus_g2_vx_leg3 * t60 - g2_vy_leg3 * t62;
-        let t229 = 4.166666666666667 * t75;
-        let t243 = rate_1_leg1 + minus_rate_2_leg1;
-        let t246 = rate_2_leg2 - rate_1_leg2;
-        let t251 = rate_2_leg3 - rate_1_leg3;
+        let t162 = rate_1_leg3 * rate_1_leg3;
+        let t164 = 2.0833333333333335 * (t118 - 0.1152);
+        let rate_dot_1_leg3 = t133 * (t158 + t162 * t164);
+        let t171 = minus_g1_vy_leg3 * t64 - g1_vx_leg3 * t62;
+        let t181 = minus_g2_vx_leg1 * t57 + minus_g2_vy_leg1 * t59;
+        let t186 = t39 * acceleration[0] + t47 * acceleration[1] + 0.0576 * t81;
+        let minus_rate_dot_2_leg1 = t42 * (t186 + t75 * t83);
+        let t191 = t42 * t56;
+        let t193 = t56 / t27;
+        let t198 = t97 * acceleration[0] - t92 * acceleration[1] + 0.24 * t107;
+        let minus_rate_dot_2_leg2 = t28 * (t198 + t101 * t109);
+        let t205 = minus_g2_vx_leg2 * t62 - g2_vy_leg2 * t64;
+        let t209 = minus_g2_vx_leg3 * t57 - g2_vy_leg3 * t59;
+        let t214 = t147 * acceleration[1] - t152 * acceleration[0] - 0.24 * t162;
+        let rate_dot_2_leg3 = t133 * (t214 - t156 * t164);
+        let t221 = minus_g2_vx_leg3 * t62 - g2_vy_leg3 * t64;
+        let t224 = 4.166666666666667 * t77;
+        let t238 = rate_1_leg1 + minus_rate_2_leg1;
+        let t241 = rate_2_leg2 - rate_1_leg2;
+        let t246 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
-                -(t55 * acceleration[0] + t57 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0,
-                t142 * rate_dot_1_leg3, rate_1_leg1, 0.0, t142 * rate_1_leg3,
-                ::overact::math::sign(rate_1_leg1), 0.0, ::overact::math::signed(t142, rate_1_leg3),
-                1.0, 0.0, t142, -(t182 * minus_rate_dot_2_leg1), -(t198 * minus_rate_dot_2_leg2),
-                t214 * rate_dot_2_leg3, 4.166666666666667 * t187 + t182 * t229, t198 * t101,
-                -(t142 * t219 + t214 * t159), -::overact::math::signed(t182 - 1.0, t243),
-                ::overact::math::signed(t198, t246), ::overact::math::signed(t214 - t142, t251),
+                -(t57 * acceleration[0] + t59 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0,
+                t141 * rate_dot_1_leg3, rate_1_leg1, 0.0, t141 * rate_1_leg3,
+                ::overact::math::sign(rate_1_leg1), 0.0, ::overact::math::signed(t141, rate_1_leg3),
+                1.0, 0.0, t141, -(t181 * minus_rate_dot_2_leg1), t193 * minus_rate_dot_2_leg2,
+                t209 * rate_dot_2_leg3, 4.166666666666667 * t186 + t181 * t224, -(t193 * t103),
+                -(t141 * t214 + t209 * t158), -::overact::math::signed(t181 - 1.0, t238),
+                -::overact::math::signed(t193, t241), ::overact::math::signed(t209 - t141, t246),
             ],
             [
-                -(t60 * acceleration[0] + t62 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
-                t172 * rate_dot_1_leg3, 0.0, rate_1_leg2, t172 * rate_1_leg3, 0.0,
-                ::overact::math::sign(rate_1_leg2), ::overact::math::signed(t172, rate_1_leg3), 0.0,
-                1.0, t172, -(t194 * minus_rate_dot_2_leg1), -(t210 * minus_rate_dot_2_leg2),
-                t226 * rate_dot_2_leg3, t194 * t229, t203 + t210 * t101,
-                -(t172 * t219 + t226 * t159), -::overact::math::signed(t194, t243),
-                ::overact::math::signed(t210 - 1.0, t246),
-                ::overact::math::signed(t226 - t172, t251),
+                -(t62 * acceleration[0] + t64 * acceleration[1]), 0.0, -minus_rate_dot_1_leg2,
+                t171 * rate_dot_1_leg3, 0.0, rate_1_leg2, t171 * rate_1_leg3, 0.0,
+                ::overact::math::sign(rate_1_leg2), ::overact::math::signed(t171, rate_1_leg3), 0.0,
+                1.0, t171, -(t191 * minus_rate_dot_2_leg1), -(t205 * minus_rate_dot_2_leg2),
+                t221 * rate_dot_2_leg3, t191 * t224, t198 + t205 * t103,
+                -(t171 * t214 + t221 * t158), -::overact::math::signed(t191, t238),
+                ::overact::math::signed(t205 - 1.0, t241),
+                ::overact::math::signed(t221 - t171, t246),
             ],
         ])
     }
@@ -2721,7 +2687,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 303 operations (108 additions, 186 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 282 intermediates.
+    /// 298 operations (106 additions, 182 multiplications, 10 divisions), 3 square roots, 0 trigonometric pairs, 10 signs, 277 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2732,173 +2698,171 @@ impl ThreeLegPoint {
         start: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.3031088913245535;
+        let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
-        let t3 = 0.8660254037844386 * t2;
-        let t4 = 0.5 * t0 - t3;
-        let t7 = 0.5 * t2;
-        let t8 = 0.8660254037844386 * t0 + t7;
-        let t11 = t8 * t8 + t4 * t4;
-        let t13 = 0.0576 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg2")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t21 = t4 * t14 - 0.5 * t8;
-        let t22 = t8 + t21;
-        let t24 = 3.608439182435161 * t17 - 2.0833333333333335 * t22;
-        let t25 = t11 * t14;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let minus_g1_vy_leg2 = t24 * t26;
-        let t29 = pose[1] - 0.35;
-        let t32 = t29 * t29 + pose[0] * pose[0];
-        let t34 = 0.0576 / t32 - 0.25;
-        ::overact::guard::reach(t34, "leg1")?;
-        let t35 = ::overact::math::sqrt(t34);
-        let t37 = 0.5 * pose[0] + t29 * t35;
-        let t38 = t37 - pose[0];
-        let t39 = t32 * t35;
-        ::overact::guard::leg(t39, 0.05748423696979895, "leg1")?;
-        let t40 = 1.0 / t39;
-        let minus_g1_vx_leg1 = t38 * t40;
-        let t45 = 0.5 * t29 - pose[0] * t35;
-        let t46 = t29 - t45;
-        let g1_vy_leg1 = t46 * t40;
-        let t50 = 3.608439182435161 * t22 + 2.0833333333333335 * t17;
-        let g1_vx_leg2 = t50 * t26;
-        let t53 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t53, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t53, 15.09578052481963, "kept actuators")?;
-        let t54 = 1.0 / t53;
-        let t55 = minus_g1_vy_leg2 * t54;
-        let t59 = pose[0] - 0.3031088913245535;
-        let t61 = 0.8660254037844386 * t59 - t7;
-        let t64 = 0.5 * t59 + t3;
-        let t67 = t61 * t61 + t64 * t64;
-        let t69 = 0.0576 / t67 - 0.25;
-        ::overact::guard::reach(t69, "leg3")?;
-        let t70 = ::overact::math::sqrt(t69);
-        let t72 = 0.5 * t61 + t64 * t70;
-        let t73 = t61 - t72;
-        let t77 = 0.5 * t64 - t61 * t70;
-        let t78 = t64 - t77;
-        let t80 = 3.608439182435161 * t73 + 2.0833333333333335 * t78;
-        let t81 = t67 * t70;
-        ::overact::guard::leg(t81, 0.05748423696979895, "leg3")?;
-        let t82 = 0.24 / t81;
-        let g1_vx_leg3 = t80 * t82;
-        let t85 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
+        let t5 = pose[0] - t4;
+        let t9 = 0.5 * t2;
+        let t10 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t9;
+        let t13 = t10 * t10 + t5 * t5;
+        let t15 = 0.0576 / t13 - 0.25;
+        ::overact::guard::reach(t15, "leg2")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let t18 = 0.5 * t5 + t10 * t16;
+        let t19 = t5 - t18;
+        let t23 = t5 * t16 - 0.5 * t10;
+        let t24 = t10 + t23;
+        let t26 = 3.608439182435161 * t19 - 2.0833333333333335 * t24;
+        let t27 = t13 * t16;
+        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
+        let t28 = 0.24 / t27;
+        let minus_g1_vy_leg2 = t26 * t28;
+        let t31 = pose[1] - 0.35;
+        let t34 = t31 * t31 + pose[0] * pose[0];
+        let t36 = 0.0576 / t34 - 0.25;
+        ::overact::guard::reach(t36, "leg1")?;
+        let t37 = ::overact::math::sqrt(t36);
+        let t39 = 0.5 * pose[0] + t31 * t37;
+        let t40 = t39 - pose[0];
+        let t41 = t34 * t37;
+        ::overact::guard::leg(t41, 0.05748423696979895, "leg1")?;
+        let t42 = 1.0 / t41;
+        let minus_g1_vx_leg1 = t40 * t42;
+        let t47 = 0.5 * t31 - pose[0] * t37;
+        let t48 = t31 - t47;
+        let g1_vy_leg1 = t48 * t42;
+        let t52 = 3.608439182435161 * t24 + 2.0833333333333335 * t19;
+        let g1_vx_leg2 = t52 * t28;
+        let t55 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(t55, 15.09578052481963, "kept actuators")?;
+        let t56 = 1.0 / t55;
+        let t57 = minus_g1_vy_leg2 * t56;
+        let t62 = 0.8660254037844386 * t0 - t9;
+        let t66 = t62 * t62 + t4 * t4;
+        let t68 = 0.0576 / t66 - 0.25;
+        ::overact::guard::reach(t68, "leg3")?;
+        let t69 = ::overact::math::sqrt(t68);
+        let t71 = 0.5 * t62 + t4 * t69;
+        let t72 = t62 - t71;
+        let t76 = 0.5 * t4 - t62 * t69;
+        let t77 = t4 - t76;
+        let t79 = 3.608439182435161 * t72 + 2.0833333333333335 * t77;
+        let t80 = t66 * t69;
+        ::overact::guard::leg(t80, 0.05748423696979895, "leg3")?;
+        let t81 = 0.24 / t80;
+        let g1_vx_leg3 = t79 * t81;
+        let t84 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t85, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t85, 26.146658848896372, "actuators")?;
-        let t86 = 1.0 / t85;
-        let t89 = 3.608439182435161 * t16 + 2.0833333333333335 * t21;
-        let g2_vy_leg2 = t89 * t26;
-        let t96 = 2.0833333333333335 * t73 - 3.608439182435161 * t78;
-        let minus_g1_vy_leg3 = t96 * t82;
-        let t104 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t84, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t84, 26.146658848896372, "actuators")?;
+        let t85 = 1.0 / t84;
+        let t88 = 3.608439182435161 * t18 + 2.0833333333333335 * t23;
+        let g2_vy_leg2 = t88 * t28;
+        let t95 = 2.0833333333333335 * t72 - 3.608439182435161 * t77;
+        let minus_g1_vy_leg3 = t95 * t81;
+        let t103 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t105 = t104 * t86;
-        let t107 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t104 * t105;
-        ::overact::guard::platform(t107, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t107, 26.146658848896372, "actuators")?;
-        let t108 = 1.0 / t107;
-        let t118 = g1_vx_leg2 * actuator_velocities[1]
+        let t104 = t103 * t85;
+        let t106 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t103 * t104;
+        ::overact::guard::platform(t106, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t106, 26.146658848896372, "actuators")?;
+        let t107 = 1.0 / t106;
+        let t117 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t121 = t108
+        let t120 = t107
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t118 * t105);
-        let t125 = 2.0833333333333335 * t16 - 3.608439182435161 * t21;
-        let minus_g2_vx_leg2 = t125 * t26;
-        let t129 = t118 * t86 + t105 * t121;
-        let rate_2_leg2 = g2_vy_leg2 * t121 - minus_g2_vx_leg2 * t129;
-        let t132 = rate_2_leg2 * rate_2_leg2;
-        let t133 = 0.24 * t132;
-        let rate_1_leg2 = g1_vx_leg2 * t129 - minus_g1_vy_leg2 * t121;
-        let t137 = rate_1_leg2 * rate_1_leg2;
-        let t139 = 2.0833333333333335 * (t11 - 0.1152);
-        let t140 = t137 * t139;
-        let rate_dot_1_leg2 = t26 * (t133 + t140);
-        let t143 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t37 * t40;
-        let minus_g2_vy_leg1 = t45 * t40;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t129 + minus_g2_vy_leg1 * t121;
-        let t150 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t151 = 0.0576 * t150;
-        let rate_1_leg1 = g1_vy_leg1 * t121 - minus_g1_vx_leg1 * t129;
-        let t155 = rate_1_leg1 * rate_1_leg1;
-        let t157 = 0.5 * (t32 - 0.1152);
-        let t158 = t155 * t157;
-        let rate_dot_1_leg1 = t40 * (t151 + t158);
-        let t161 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t166 = 2.0833333333333335 * t72 - 3.608439182435161 * t77;
-        let g2_vy_leg3 = t166 * t82;
-        let t171 = 3.608439182435161 * t72 + 2.0833333333333335 * t77;
-        let minus_g2_vx_leg3 = t171 * t82;
-        let rate_2_leg3 = g2_vy_leg3 * t121 - minus_g2_vx_leg3 * t129;
-        let t175 = rate_2_leg3 * rate_2_leg3;
-        let t176 = 0.24 * t175;
-        let rate_1_leg3 = g1_vx_leg3 * t129 - minus_g1_vy_leg3 * t121;
-        let t180 = rate_1_leg3 * rate_1_leg3;
-        let t182 = 2.0833333333333335 * (t67 - 0.1152);
-        let t183 = t180 * t182;
-        let rate_dot_1_leg3 = t82 * (t176 + t183);
-        let t186 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t188 = g1_vx_leg2 * t143 - minus_g1_vx_leg1 * t161 + g1_vx_leg3 * t186;
-        let t197 = t108
-            * (g1_vy_leg1 * t161 - minus_g1_vy_leg2 * t143 - minus_g1_vy_leg3 * t186
-                + t105 * t188);
-        let t199 = t86 * t188 + t105 * t197;
-        let t201 = g1_vx_leg2 * t54;
-        let t204 = g1_vy_leg1 * t54;
-        let t206 = minus_g1_vx_leg1 * t54;
-        let t212 = t38 * t199 - t46 * t197 - t151;
-        let minus_rate_dot_1_leg1 = t40 * (t212 - t158);
-        let t218 = t24 * t197 - t50 * t199 - t133;
-        let minus_rate_dot_1_leg2 = t26 * (t218 - t140);
-        let t223 = minus_g1_vy_leg3 * t201 - g1_vx_leg3 * t55;
-        let t227 = t80 * t199 - t96 * t197 + t176;
-        let rate_dot_1_leg3_2 = t82 * (t227 + t183);
-        let t233 = minus_g1_vy_leg3 * t206 - g1_vx_leg3 * t204;
-        let t243 = minus_g2_vx_leg1 * t55 + minus_g2_vy_leg1 * t201;
-        let t248 = t37 * t199 + t45 * t197 + 0.0576 * t155;
-        let minus_rate_dot_2_leg1 = t40 * (t248 + t150 * t157);
-        let t255 = minus_g2_vx_leg1 * t204 + minus_g2_vy_leg1 * t206;
-        let t259 = minus_g2_vx_leg2 * t55 - g2_vy_leg2 * t201;
-        let t264 = t125 * t199 - t89 * t197 + 0.24 * t137;
-        let minus_rate_dot_2_leg2 = t26 * (t264 + t132 * t139);
-        let t271 = minus_g2_vx_leg2 * t204 - g2_vy_leg2 * t206;
-        let t275 = minus_g2_vx_leg3 * t55 - g2_vy_leg3 * t201;
-        let t280 = t166 * t197 - t171 * t199 - 0.24 * t180;
-        let rate_dot_2_leg3 = t82 * (t280 - t175 * t182);
-        let t287 = minus_g2_vx_leg3 * t204 - g2_vy_leg3 * t206;
-        let t290 = 4.166666666666667 * t212;
-        let t304 = rate_1_leg1 + minus_rate_2_leg1;
-        let t307 = rate_2_leg2 - rate_1_leg2;
-        let t312 = rate_2_leg3 - rate_1_leg3;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t117 * t104);
+        let t124 = 2.0833333333333335 * t18 - 3.608439182435161 * t23;
+        let minus_g2_vx_leg2 = t124 * t28;
+        let t128 = t117 * t85 + t104 * t120;
+        let rate_2_leg2 = g2_vy_leg2 * t120 - minus_g2_vx_leg2 * t128;
+        let t131 = rate_2_leg2 * rate_2_leg2;
+        let t132 = 0.24 * t131;
+        let rate_1_leg2 = g1_vx_leg2 * t128 - minus_g1_vy_leg2 * t120;
+        let t136 = rate_1_leg2 * rate_1_leg2;
+        let t138 = 2.0833333333333335 * (t13 - 0.1152);
+        let t139 = t136 * t138;
+        let rate_dot_1_leg2 = t28 * (t132 + t139);
+        let t142 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t39 * t42;
+        let minus_g2_vy_leg1 = t47 * t42;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t128 + minus_g2_vy_leg1 * t120;
+        let t149 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t150 = 0.0576 * t149;
+        let rate_1_leg1 = g1_vy_leg1 * t120 - minus_g1_vx_leg1 * t128;
+        let t154 = rate_1_leg1 * rate_1_leg1;
+        let t156 = 0.5 * (t34 - 0.1152);
+        let t157 = t154 * t156;
+        let rate_dot_1_leg1 = t42 * (t150 + t157);
+        let t160 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t165 = 2.0833333333333335 * t71 - 3.608439182435161 * t76;
+        let g2_vy_leg3 = t165 * t81;
+        let t170 = 3.608439182435161 * t71 + 2.0833333333333335 * t76;
+        let minus_g2_vx_leg3 = t170 * t81;
+        let rate_2_leg3 = g2_vy_leg3 * t120 - minus_g2_vx_leg3 * t128;
+        let t174 = rate_2_leg3 * rate_2_leg3;
+        let t175 = 0.24 * t174;
+        let rate_1_leg3 = g1_vx_leg3 * t128 - minus_g1_vy_leg3 * t120;
+        let t179 = rate_1_leg3 * rate_1_leg3;
+        let t181 = 2.0833333333333335 * (t66 - 0.1152);
+        let t182 = t179 * t181;
+        let rate_dot_1_leg3 = t81 * (t175 + t182);
+        let t185 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t187 = g1_vx_leg2 * t142 - minus_g1_vx_leg1 * t160 + g1_vx_leg3 * t185;
+        let t196 = t107
+            * (g1_vy_leg1 * t160 - minus_g1_vy_leg2 * t142 - minus_g1_vy_leg3 * t185
+                + t104 * t187);
+        let t198 = t85 * t187 + t104 * t196;
+        let t200 = g1_vx_leg2 * t56;
+        let t203 = g1_vy_leg1 * t56;
+        let t205 = minus_g1_vx_leg1 * t56;
+        let t211 = t40 * t198 - t48 * t196 - t150;
+        let minus_rate_dot_1_leg1 = t42 * (t211 - t157);
+        let t217 = t26 * t196 - t52 * t198 - t132;
+        let minus_rate_dot_1_leg2 = t28 * (t217 - t139);
+        let t222 = minus_g1_vy_leg3 * t200 - g1_vx_leg3 * t57;
+        let t226 = t79 * t198 - t95 * t196 + t175;
+        let rate_dot_1_leg3_2 = t81 * (t226 + t182);
+        let t232 = minus_g1_vy_leg3 * t205 - g1_vx_leg3 * t203;
+        let t242 = minus_g2_vx_leg1 * t57 + minus_g2_vy_leg1 * t200;
+        let t247 = t39 * t198 + t47 * t196 + 0.0576 * t154;
+        let minus_rate_dot_2_leg1 = t42 * (t247 + t149 * t156);
+        let t252 = t42 * t56;
+        let t254 = t56 / t27;
+        let t259 = t124 * t198 - t88 * t196 + 0.24 * t136;
+        let minus_rate_dot_2_leg2 = t28 * (t259 + t131 * t138);
+        let t266 = minus_g2_vx_leg2 * t203 - g2_vy_leg2 * t205;
+        let t270 = minus_g2_vx_leg3 * t57 - g2_vy_leg3 * t200;
+        let t275 = t165 * t196 - t170 * t198 - 0.24 * t179;
+        let rate_dot_2_leg3 = t81 * (t275 - t174 * t181);
+        let t282 = minus_g2_vx_leg3 * t203 - g2_vy_leg3 * t205;
+        let t285 = 4.166666666666667 * t211;
+        let t299 = rate_1_leg1 + minus_rate_2_leg1;
+        let t302 = rate_2_leg2 - rate_1_leg2;
+        let t307 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
-                -(t55 * t199 + t201 * t197), -minus_rate_dot_1_leg1, 0.0, t223 * rate_dot_1_leg3_2,
-                rate_1_leg1, 0.0, t223 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
-                ::overact::math::signed(t223, rate_1_leg3), 1.0, 0.0, t223,
-                -(t243 * minus_rate_dot_2_leg1), -(t259 * minus_rate_dot_2_leg2),
-                t275 * rate_dot_2_leg3, 4.166666666666667 * t248 + t243 * t290, t259 * t218,
-                -(t223 * t280 + t275 * t227), -::overact::math::signed(t243 - 1.0, t304),
-                ::overact::math::signed(t259, t307), ::overact::math::signed(t275 - t223, t312),
+                -(t57 * t198 + t200 * t196), -minus_rate_dot_1_leg1, 0.0, t222 * rate_dot_1_leg3_2,
+                rate_1_leg1, 0.0, t222 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
+                ::overact::math::signed(t222, rate_1_leg3), 1.0, 0.0, t222,
+                -(t242 * minus_rate_dot_2_leg1), t254 * minus_rate_dot_2_leg2,
+                t270 * rate_dot_2_leg3, 4.166666666666667 * t247 + t242 * t285, -(t254 * t217),
+                -(t222 * t275 + t270 * t226), -::overact::math::signed(t242 - 1.0, t299),
+                -::overact::math::signed(t254, t302), ::overact::math::signed(t270 - t222, t307),
             ],
             [
-                -(t204 * t199 + t206 * t197), 0.0, -minus_rate_dot_1_leg2, t233 * rate_dot_1_leg3_2,
-                0.0, rate_1_leg2, t233 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
-                ::overact::math::signed(t233, rate_1_leg3), 0.0, 1.0, t233,
-                -(t255 * minus_rate_dot_2_leg1), -(t271 * minus_rate_dot_2_leg2),
-                t287 * rate_dot_2_leg3, t255 * t290, t264 + t271 * t218,
-                -(t233 * t280 + t287 * t227), -::overact::math::signed(t255, t304),
-                ::overact::math::signed(t271 - 1.0, t307),
-                ::overact::math::signed(t287 - t233, t312),
+                -(t203 * t198 + t205 * t196), 0.0, -minus_rate_dot_1_leg2, t232 * rate_dot_1_leg3_2,
+                0.0, rate_1_leg2, t232 * rate_1_leg3, 0.0, ::overact::math::sign(rate_1_leg2),
+                ::overact::math::signed(t232, rate_1_leg3), 0.0, 1.0, t232,
+                -(t252 * minus_rate_dot_2_leg1), -(t266 * minus_rate_dot_2_leg2),
+                t282 * rate_dot_2_leg3, t252 * t285, t259 + t266 * t217,
+                -(t232 * t275 + t282 * t226), -::overact::math::signed(t252, t299),
+                ::overact::math::signed(t266 - 1.0, t302),
+                ::overact::math::signed(t282 - t232, t307),
             ],
         ])
     }
@@ -2910,7 +2874,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 87 operations (34 additions, 47 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 88 intermediates.
+    /// 80 operations (28 additions, 46 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 81 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2918,49 +2882,47 @@ impl ThreeLegPoint {
         pose: &[f64; 2],
         torques: &[f64; 3],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.3031088913245535;
+        let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
-        let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 + t3;
-        let t6 = 0.8660254037844386 * t2;
-        let t7 = 0.5 * t0 - t6;
-        let t10 = t4 * t4 + t7 * t7;
-        let t12 = 0.0576 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg2")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t17 = t4 + t7 * t13 - 0.5 * t4;
-        let t22 = t7 - (0.5 * t7 + t4 * t13);
-        let t25 = t10 * t13;
+        let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
+        let t5 = pose[0] - t4;
+        let t8 = 0.5 * t2;
+        let t9 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t8;
+        let t12 = t9 * t9 + t5 * t5;
+        let t14 = 0.0576 / t12 - 0.25;
+        ::overact::guard::reach(t14, "leg2")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let t18 = t5 * t15 + 0.5 * t9;
+        let t22 = 0.5 * t5 - t9 * t15;
+        let t25 = t12 * t15;
         ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
         let t26 = 0.24 / t25;
-        let g1_vx_leg2 = (3.608439182435161 * t17 + 2.0833333333333335 * t22) * t26;
+        let g1_vx_leg2 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
         let t30 = pose[1] - 0.35;
         let t33 = t30 * t30 + pose[0] * pose[0];
         let t35 = 0.0576 / t33 - 0.25;
         ::overact::guard::reach(t35, "leg1")?;
         let t36 = ::overact::math::sqrt(t35);
-        let t40 = t33 * t36;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg1")?;
-        let t41 = 1.0 / t40;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t30 * t36 - pose[0]) * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t3;
-        let t50 = 0.5 * t45 + t6;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t59 = t47 - (0.5 * t47 + t50 * t56);
-        let t64 = t50 - (0.5 * t50 - t47 * t56);
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let g1_vx_leg3 = (3.608439182435161 * t59 + 2.0833333333333335 * t64) * t68;
-        let g1_vy_leg1 = (t30 - (0.5 * t30 - pose[0] * t36)) * t41;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t17)
+        let t39 = t33 * t36;
+        ::overact::guard::leg(t39, 0.05748423696979895, "leg1")?;
+        let t40 = 1.0 / t39;
+        let minus_g1_vx_leg1 = (t30 * t36 - 0.5 * pose[0]) * t40;
+        let t45 = 0.8660254037844386 * t0 - t8;
+        let t49 = t45 * t45 + t4 * t4;
+        let t51 = 0.0576 / t49 - 0.25;
+        ::overact::guard::reach(t51, "leg3")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t54 = 0.5 * t45 - t4 * t52;
+        let t58 = 0.5 * t4 + t45 * t52;
+        let t61 = t49 * t52;
+        ::overact::guard::leg(t61, 0.05748423696979895, "leg3")?;
+        let t62 = 0.24 / t61;
+        let g1_vx_leg3 = (3.608439182435161 * t54 + 2.0833333333333335 * t58) * t62;
+        let g1_vy_leg1 = (0.5 * t30 + pose[0] * t36) * t40;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t18)
             * t26;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t59 - 3.608439182435161 * t64)
-            * t68;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
+            * t62;
         Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
                 + g1_vx_leg3 * torques[2],
@@ -2976,7 +2938,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 95 operations (35 additions, 53 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 96 intermediates.
+    /// 88 operations (29 additions, 52 multiplications, 7 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 89 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2984,62 +2946,60 @@ impl ThreeLegPoint {
         pose: &[f64; 2],
         torques: &[f64; 3],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 - t3;
-        let t7 = 0.8660254037844386 * t2;
-        let t8 = 0.5 * t0 + t7;
-        let t11 = t4 * t4 + t8 * t8;
-        let t13 = 0.0576 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg3")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t17 = t4 - (0.5 * t4 + t8 * t14);
-        let t22 = t8 - (0.5 * t8 - t4 * t14);
-        let t25 = t11 * t14;
+        let t4 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t3;
+        let t6 = pose[0] + 0.3031088913245535;
+        let t9 = 0.5 * t6 - 0.8660254037844386 * t2;
+        let t10 = pose[0] - t9;
+        let t13 = t4 * t4 + t10 * t10;
+        let t15 = 0.0576 / t13 - 0.25;
+        ::overact::guard::reach(t15, "leg3")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let t18 = 0.5 * t4 - t10 * t16;
+        let t22 = 0.5 * t10 + t4 * t16;
+        let t25 = t13 * t16;
         ::overact::guard::leg(t25, 0.05748423696979895, "leg3")?;
         let t26 = 0.24 / t25;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t17 - 3.608439182435161 * t22)
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t18 - 3.608439182435161 * t22)
             * t26;
-        let t28 = pose[0] + 0.3031088913245535;
-        let t30 = 0.8660254037844386 * t28 + t3;
-        let t32 = 0.5 * t28 - t7;
-        let t35 = t30 * t30 + t32 * t32;
-        let t37 = 0.0576 / t35 - 0.25;
-        ::overact::guard::reach(t37, "leg2")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let t42 = t30 + t32 * t38 - 0.5 * t30;
-        let t47 = t32 - (0.5 * t32 + t30 * t38);
-        let t50 = t35 * t38;
-        ::overact::guard::leg(t50, 0.05748423696979895, "leg2")?;
-        let t51 = 0.24 / t50;
-        let g1_vx_leg2 = (3.608439182435161 * t42 + 2.0833333333333335 * t47) * t51;
-        let t54 = pose[1] - 0.35;
-        let t57 = t54 * t54 + pose[0] * pose[0];
-        let t59 = 0.0576 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg1")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t64 = t57 * t60;
-        ::overact::guard::leg(t64, 0.05748423696979895, "leg1")?;
-        let t65 = 1.0 / t64;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t54 * t60 - pose[0]) * t65;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t47 - 2.0833333333333335 * t42)
-            * t51;
-        let g1_vy_leg1 = (t54 - (0.5 * t54 - pose[0] * t60)) * t65;
-        let t78 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        ::overact::guard::platform(t78, 15.09578052481963, "kept actuators")?;
-        ::overact::guard::platform(t78, 15.09578052481963, "kept actuators")?;
-        let t79 = 1.0 / t78;
-        let g1_vx_leg3 = (3.608439182435161 * t17 + 2.0833333333333335 * t22) * t26;
+        let t29 = 0.8660254037844386 * t6 + t3;
+        let t32 = t29 * t29 + t9 * t9;
+        let t34 = 0.0576 / t32 - 0.25;
+        ::overact::guard::reach(t34, "leg2")?;
+        let t35 = ::overact::math::sqrt(t34);
+        let t38 = t9 * t35 + 0.5 * t29;
+        let t42 = 0.5 * t9 - t29 * t35;
+        let t45 = t32 * t35;
+        ::overact::guard::leg(t45, 0.05748423696979895, "leg2")?;
+        let t46 = 0.24 / t45;
+        let g1_vx_leg2 = (3.608439182435161 * t38 + 2.0833333333333335 * t42) * t46;
+        let t49 = pose[1] - 0.35;
+        let t52 = t49 * t49 + pose[0] * pose[0];
+        let t54 = 0.0576 / t52 - 0.25;
+        ::overact::guard::reach(t54, "leg1")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let t58 = t52 * t55;
+        ::overact::guard::leg(t58, 0.05748423696979895, "leg1")?;
+        let t59 = 1.0 / t58;
+        let minus_g1_vx_leg1 = (t49 * t55 - 0.5 * pose[0]) * t59;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t42 - 2.0833333333333335 * t38)
+            * t46;
+        let g1_vy_leg1 = (0.5 * t49 + pose[0] * t55) * t59;
+        let t71 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        ::overact::guard::platform(t71, 15.09578052481963, "kept actuators")?;
+        ::overact::guard::platform(t71, 15.09578052481963, "kept actuators")?;
+        let t72 = 1.0 / t71;
+        let g1_vx_leg3 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
         Ok([
             torques[0]
                 + torques[2]
-                    * (minus_g1_vy_leg3 * (g1_vx_leg2 * t79)
-                        - g1_vx_leg3 * (minus_g1_vy_leg2 * t79)),
+                    * (minus_g1_vy_leg3 * (g1_vx_leg2 * t72)
+                        - g1_vx_leg3 * (minus_g1_vy_leg2 * t72)),
             torques[1]
                 + torques[2]
-                    * (minus_g1_vy_leg3 * (minus_g1_vx_leg1 * t79)
-                        - g1_vx_leg3 * (g1_vy_leg1 * t79)),
+                    * (minus_g1_vy_leg3 * (minus_g1_vx_leg1 * t72)
+                        - g1_vx_leg3 * (g1_vy_leg1 * t72)),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3052,7 +3012,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 340 operations (133 additions, 199 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 346 intermediates.
+    /// 333 operations (133 additions, 192 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 339 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3073,161 +3033,157 @@ impl ThreeLegPoint {
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
         let t12 = 1.0 / t11;
         let g1_vy_leg1 = t10 * t12;
-        let t15 = pose[0] + 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t18 = 0.8660254037844386 * t17;
-        let t19 = 0.5 * t15 - t18;
-        let t22 = 0.5 * t17;
-        let t23 = 0.8660254037844386 * t15 + t22;
-        let t26 = t23 * t23 + t19 * t19;
-        let t28 = 0.0576 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t31 = 0.5 * t19 + t23 * t29;
-        let t32 = t19 - t31;
-        let t36 = t19 * t29 - 0.5 * t23;
-        let t37 = t23 + t36;
-        let t39 = 3.608439182435161 * t32 - 2.0833333333333335 * t37;
-        let t40 = t26 * t29;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let minus_g1_vy_leg2 = t39 * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t22;
-        let t50 = 0.5 * t45 + t18;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t47 + t50 * t56;
-        let t59 = t47 - t58;
-        let t63 = 0.5 * t50 - t47 * t56;
-        let t64 = t50 - t63;
-        let t66 = 2.0833333333333335 * t59 - 3.608439182435161 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let minus_g1_vy_leg3 = t66 * t68;
-        let t74 = 0.5 * pose[0] + t0 * t7;
-        let t75 = t74 - pose[0];
-        let minus_g1_vx_leg1 = t75 * t12;
-        let t80 = 3.608439182435161 * t37 + 2.0833333333333335 * t32;
-        let g1_vx_leg2 = t80 * t41;
-        let t86 = 3.608439182435161 * t59 + 2.0833333333333335 * t64;
-        let g1_vx_leg3 = t86 * t68;
-        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t94 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = t89 * t95;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        let t17 = 0.5 * pose[0] + t0 * t7;
+        let t18 = t17 - pose[0];
+        let minus_g1_vx_leg1 = t18 * t12;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = t74 * t12;
+        let minus_g2_vx_leg1 = t17 * t12;
         let minus_g2_vy_leg1 = t9 * t12;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t111 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t113 = t75 * acceleration[0] - t10 * acceleration[1] - 0.0576 * t111;
-        let t114 = rate_1_leg1 * rate_1_leg1;
-        let t115 = t4 - 0.1152;
-        let t116 = 0.5 * t115;
-        let minus_rate_dot_1_leg1 = t12 * (t113 - t114 * t116);
+        let t31 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t33 = t18 * acceleration[0] - t10 * acceleration[1] - 0.0576 * t31;
+        let t34 = rate_1_leg1 * rate_1_leg1;
+        let t35 = t4 - 0.1152;
+        let t36 = 0.5 * t35;
+        let minus_rate_dot_1_leg1 = t12 * (t33 - t34 * t36);
+        let t47 = 4.166666666666667 * t11;
         let minus_rate_dot_2_leg1 = t12
-            * (t74 * acceleration[0] + t9 * acceleration[1] + 0.0576 * t114
-                + t111 * t116);
-        let t139 = 4.166666666666667 * t113;
-        let t148 = 4.166666666666667 * (t11 * t114)
-            - 2.0833333333333335 * (t115 * minus_rate_dot_1_leg1);
-        let t155 = 4.166666666666667 * t11
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t111
-                - parameters[8] * t139)
-            + 2.0833333333333335 * t115
-                * (parameters[8] * t148
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t111));
-        let t158 = ::overact::math::signed(
+            * (t17 * acceleration[0] + t9 * acceleration[1] + 0.0576 * t34 + t31 * t36);
+        let t59 = 4.166666666666667 * t33;
+        let t63 = 2.0833333333333335 * t35;
+        let t66 = t34 * t47 - minus_rate_dot_1_leg1 * t63;
+        let t73 = t47
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t31
+                - parameters[8] * t59)
+            + t63
+                * (parameters[8] * t66
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t31));
+        let t76 = ::overact::math::signed(
             parameters[9],
             rate_1_leg1 + minus_rate_2_leg1,
         );
-        let t159 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
+        let t77 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t155 + t158;
-        let t166 = parameters[6] * t148 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t139 - t158;
-        let t171 = 3.608439182435161 * t31 + 2.0833333333333335 * t36;
-        let g2_vy_leg2 = t171 * t41;
+            - parameters[0] * minus_rate_dot_1_leg1 + t73 + t76;
+        let t84 = parameters[6] * t66 - parameters[5] * minus_rate_dot_2_leg1
+            + parameters[7] * t59 - t76;
+        let t87 = pose[0] - 0.3031088913245535;
+        let t89 = pose[1] + 0.175;
+        let t91 = 0.5 * t87 + 0.8660254037844386 * t89;
+        let t92 = pose[0] - t91;
+        let t96 = 0.5 * t89;
+        let t97 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t96;
+        let t100 = t97 * t97 + t92 * t92;
+        let t102 = 0.0576 / t100 - 0.25;
+        ::overact::guard::reach(t102, "leg2")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t105 = 0.5 * t92 + t97 * t103;
+        let t109 = t92 * t103 - 0.5 * t97;
+        let t111 = 3.608439182435161 * t105 + 2.0833333333333335 * t109;
+        let t112 = t100 * t103;
+        ::overact::guard::leg(t112, 0.05748423696979895, "leg2")?;
+        let t113 = 0.24 / t112;
+        let g2_vy_leg2 = t111 * t113;
+        let t115 = t97 + t109;
+        let t117 = t92 - t105;
+        let t119 = 3.608439182435161 * t115 + 2.0833333333333335 * t117;
+        let g1_vx_leg2 = t119 * t113;
+        let t124 = 3.608439182435161 * t117 - 2.0833333333333335 * t115;
+        let minus_g1_vy_leg2 = t124 * t113;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t176 = rate_1_leg2 * rate_1_leg2;
-        let t179 = t26 - 0.1152;
-        let t186 = 2.0833333333333335 * t31 - 3.608439182435161 * t36;
-        let minus_g2_vx_leg2 = t186 * t41;
+        let t128 = rate_1_leg2 * rate_1_leg2;
+        let t129 = 4.166666666666667 * t112;
+        let t132 = 2.0833333333333335 * (t100 - 0.1152);
+        let t139 = 2.0833333333333335 * t105 - 3.608439182435161 * t109;
+        let minus_g2_vx_leg2 = t139 * t113;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t190 = rate_2_leg2 * rate_2_leg2;
-        let t192 = t39 * acceleration[1] - t80 * acceleration[0] - 0.24 * t190;
-        let t193 = 2.0833333333333335 * t179;
-        let minus_rate_dot_1_leg2 = t41 * (t192 - t176 * t193);
-        let t199 = 4.166666666666667 * (t40 * t176)
-            - 2.0833333333333335 * (t179 * minus_rate_dot_1_leg2);
-        let minus_rate_dot_2_leg2 = t41
-            * (t186 * acceleration[0] - t171 * acceleration[1] + 0.24 * t176
-                + t190 * t193);
-        let t214 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t215 = parameters[16] * t199 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t192 + t214;
-        let t238 = 4.166666666666667 * t40
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t190
-                - parameters[18] * t192)
-            + t193
-                * (parameters[18] * t199
-                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t190));
-        let t240 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
+        let t143 = rate_2_leg2 * rate_2_leg2;
+        let t145 = t124 * acceleration[1] - t119 * acceleration[0] - 0.24 * t143;
+        let minus_rate_dot_1_leg2 = t113 * (t145 - t128 * t132);
+        let t150 = t128 * t129 - t132 * minus_rate_dot_1_leg2;
+        let minus_rate_dot_2_leg2 = t113
+            * (t139 * acceleration[0] - t111 * acceleration[1] + 0.24 * t128
+                + t143 * t132);
+        let t165 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
+        let t166 = parameters[16] * t150 - parameters[15] * minus_rate_dot_2_leg2
+            + parameters[17] * t145 + t165;
+        let t188 = t129
+            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t143
+                - parameters[18] * t145)
+            + t132
+                * (parameters[18] * t150
+                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t143));
+        let t190 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t238 - t214;
-        let t246 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let g2_vy_leg3 = t246 * t68;
-        let t251 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
+            - parameters[10] * minus_rate_dot_1_leg2 + t188 - t165;
+        let t195 = 0.8660254037844386 * t87 - t96;
+        let t199 = t195 * t195 + t91 * t91;
+        let t201 = 0.0576 / t199 - 0.25;
+        ::overact::guard::reach(t201, "leg3")?;
+        let t202 = ::overact::math::sqrt(t201);
+        let t204 = 0.5 * t195 + t91 * t202;
+        let t208 = 0.5 * t91 - t195 * t202;
+        let t210 = 2.0833333333333335 * t204 - 3.608439182435161 * t208;
+        let t211 = t199 * t202;
+        ::overact::guard::leg(t211, 0.05748423696979895, "leg3")?;
+        let t212 = 0.24 / t211;
+        let g2_vy_leg3 = t210 * t212;
+        let t217 = 3.608439182435161 * t204 + 2.0833333333333335 * t208;
+        let t220 = t195 - t204;
+        let t222 = t91 - t208;
+        let t224 = 3.608439182435161 * t220 + 2.0833333333333335 * t222;
+        let g1_vx_leg3 = t224 * t212;
+        let t229 = 2.0833333333333335 * t220 - 3.608439182435161 * t222;
+        let minus_g1_vy_leg3 = t229 * t212;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t257 = rate_1_leg3 * rate_1_leg3;
-        let minus_g2_vx_leg3 = t251 * t68;
+        let t233 = rate_1_leg3 * rate_1_leg3;
+        let minus_g2_vx_leg3 = t217 * t212;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t264 = rate_2_leg3 * rate_2_leg3;
-        let t265 = t53 - 0.1152;
-        let t266 = 2.0833333333333335 * t265;
-        let rate_dot_2_leg3 = t68
-            * (t246 * acceleration[1] - t251 * acceleration[0] - 0.24 * t257
-                - t264 * t266);
-        let t277 = t86 * acceleration[0] - t66 * acceleration[1] + 0.24 * t264;
-        let rate_dot_1_leg3 = t68 * (t277 + t257 * t266);
-        let t283 = 4.166666666666667 * (t67 * t257)
-            + 2.0833333333333335 * (t265 * rate_dot_1_leg3);
-        let t289 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t290 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t283
-            - parameters[27] * t277 + t289;
-        let t313 = 4.166666666666667 * t67
-            * (parameters[28] * t277
-                - (parameters[26] * t264 + parameters[27] * rate_dot_2_leg3))
-            + t266
-                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t264
-                    + parameters[28] * t283);
-        let t315 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
+        let t240 = rate_2_leg3 * rate_2_leg3;
+        let t242 = 2.0833333333333335 * (t199 - 0.1152);
+        let rate_dot_2_leg3 = t212
+            * (t210 * acceleration[1] - t217 * acceleration[0] - 0.24 * t233
+                - t240 * t242);
+        let t247 = 4.166666666666667 * t211;
+        let t253 = t224 * acceleration[0] - t229 * acceleration[1] + 0.24 * t240;
+        let rate_dot_1_leg3 = t212 * (t253 + t233 * t242);
+        let t258 = t233 * t247 + t242 * rate_dot_1_leg3;
+        let t264 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
+        let t265 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t258
+            - parameters[27] * t253 + t264;
+        let t287 = t247
+            * (parameters[28] * t253
+                - (parameters[26] * t240 + parameters[27] * rate_dot_2_leg3))
+            + t242
+                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t240
+                    + parameters[28] * t258);
+        let t289 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t313 - t289;
-        let t318 = g1_vy_leg1 * t159 - minus_g2_vy_leg1 * t166 + g2_vy_leg2 * t215
-            - minus_g1_vy_leg2 * t240 + g2_vy_leg3 * t290 - minus_g1_vy_leg3 * t315;
-        let t331 = g1_vx_leg2 * t240 - minus_g2_vx_leg2 * t215
-            - (minus_g1_vx_leg1 * t159 + minus_g2_vx_leg1 * t166) + g1_vx_leg3 * t315
-            - minus_g2_vx_leg3 * t290;
-        let t333 = t331 + acceleration[0] * parameters[30];
-        let t336 = (t318 + acceleration[1] * parameters[30] + t333 * t96) / t98;
-        let t340 = t333 * t95 + t96 * t336;
+            + t287 - t264;
+        let t292 = g1_vy_leg1 * t77 - minus_g2_vy_leg1 * t84 + g2_vy_leg2 * t166
+            - minus_g1_vy_leg2 * t190 + g2_vy_leg3 * t265 - minus_g1_vy_leg3 * t289;
+        let t305 = g1_vx_leg2 * t190 - minus_g2_vx_leg2 * t166
+            - (minus_g1_vx_leg1 * t77 + minus_g2_vx_leg1 * t84) + g1_vx_leg3 * t289
+            - minus_g2_vx_leg3 * t265;
+        let t307 = t305 + acceleration[0] * parameters[30];
+        let t312 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t317 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t317, 26.146658848896372, "actuators")?;
+        let t318 = 1.0 / t317;
+        let t319 = t312 * t318;
+        let t328 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t312 * t319;
+        ::overact::guard::platform(t328, 26.146658848896372, "actuators")?;
+        let t329 = (t292 + acceleration[1] * parameters[30] + t307 * t319) / t328;
+        let t333 = t307 * t318 + t319 * t329;
         Ok([
-            g1_vy_leg1 * t336 - minus_g1_vx_leg1 * t340,
-            g1_vx_leg2 * t340 - minus_g1_vy_leg2 * t336,
-            g1_vx_leg3 * t340 - minus_g1_vy_leg3 * t336,
+            g1_vy_leg1 * t329 - minus_g1_vx_leg1 * t333,
+            g1_vx_leg2 * t333 - minus_g1_vy_leg2 * t329,
+            g1_vx_leg3 * t333 - minus_g1_vy_leg3 * t329,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3241,7 +3197,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 294 operations (110 additions, 179 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 6 signs, 309 intermediates.
+    /// 291 operations (110 additions, 176 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 6 signs, 306 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3263,122 +3219,122 @@ impl ThreeLegPoint {
         let s12_leg1 = s1_leg1 * c2_leg1 + c1_leg1 * s2_leg1;
         let t10 = 4.166666666666667 / s2_leg1;
         let g1_vy_leg1 = c12_leg1 * t10;
-        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
-        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t25 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t26 = 4.166666666666667 / s2_leg2;
-        let minus_g1_vy_leg2 = t25 * t26;
-        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
-        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t42 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t43 = 4.166666666666667 / s2_leg3;
-        let minus_g1_vy_leg3 = t42 * t43;
         let minus_g1_vx_leg1 = s12_leg1 * t10;
-        let t51 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let g1_vx_leg2 = t51 * t26;
-        let t57 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let g1_vx_leg3 = t57 * t43;
-        let t60 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t65 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t65, 26.146658848631333, "actuators")?;
-        let t66 = 1.0 / t65;
-        let t67 = t60 * t66;
-        let t69 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t60 * t67;
-        ::overact::guard::platform(t69, 26.146658848631322, "actuators")?;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
         let g2_vx_leg1 = s1_leg1 * t10;
         let minus_g2_vy_leg1 = c1_leg1 * t10;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t82 = rate_2_leg1 * rate_2_leg1;
-        let t84 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t82;
-        let t85 = rate_1_leg1 * rate_1_leg1;
-        let t86 = 0.24 * c2_leg1;
-        let minus_rate_dot_1_leg1 = t10 * (t84 - t85 * t86);
-        let t101 = 0.24 * t85;
+        let t25 = rate_2_leg1 * rate_2_leg1;
+        let t27 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t25;
+        let t28 = rate_1_leg1 * rate_1_leg1;
+        let t29 = 0.24 * c2_leg1;
+        let minus_rate_dot_1_leg1 = t10 * (t27 - t28 * t29);
+        let t44 = 0.24 * t28;
         let minus_rate_dot_2_leg1 = t10
-            * (c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t101 + t82 * t86);
-        let t115 = s2_leg1 * t101 - c2_leg1 * (0.24 * minus_rate_dot_1_leg1);
-        let t122 = 0.24 * s2_leg1
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t82
-                - parameters[8] * t84)
-            + t86
-                * (parameters[8] * t115
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t82));
-        let t125 = ::overact::math::signed(parameters[9], rate_2_leg1 - rate_1_leg1);
-        let t126 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
+            * (c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t44 + t25 * t29);
+        let t57 = s2_leg1 * t44 - t29 * minus_rate_dot_1_leg1;
+        let t64 = 0.24 * s2_leg1
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t25
+                - parameters[8] * t27)
+            + t29
+                * (parameters[8] * t57
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t25));
+        let t67 = ::overact::math::signed(parameters[9], rate_2_leg1 - rate_1_leg1);
+        let t68 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t122 - t125;
-        let t133 = parameters[6] * t115 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t84 + t125;
-        let t138 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t138 * t26;
+            - parameters[0] * minus_rate_dot_1_leg1 + t64 - t67;
+        let t75 = parameters[6] * t57 - parameters[5] * minus_rate_dot_2_leg1
+            + parameters[7] * t27 + t67;
+        let t82 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let t85 = 4.166666666666667 / s2_leg2;
+        let g2_vy_leg2 = t82 * t85;
+        let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
+        let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
+        let t95 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let g1_vx_leg2 = t95 * t85;
+        let t100 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let minus_g1_vy_leg2 = t100 * t85;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t143 = rate_1_leg2 * rate_1_leg2;
-        let t144 = 0.24 * t143;
-        let t152 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t152 * t26;
+        let t104 = rate_1_leg2 * rate_1_leg2;
+        let t105 = 0.24 * t104;
+        let t107 = 0.24 * c2_leg2;
+        let t114 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = t114 * t85;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t156 = rate_2_leg2 * rate_2_leg2;
-        let t158 = t25 * acceleration[1] - t51 * acceleration[0] - 0.24 * t156;
-        let t159 = 0.24 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t26 * (t158 - t143 * t159);
-        let t165 = s2_leg2 * t144 - c2_leg2 * (0.24 * minus_rate_dot_1_leg2);
-        let minus_rate_dot_2_leg2 = t26
-            * (t152 * acceleration[0] - t138 * acceleration[1] + t144 + t156 * t159);
-        let t179 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t180 = parameters[16] * t165 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t158 + t179;
-        let t203 = 0.24 * s2_leg2
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t156
-                - parameters[18] * t158)
-            + t159
-                * (parameters[18] * t165
-                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t156));
-        let t205 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
+        let t118 = rate_2_leg2 * rate_2_leg2;
+        let t120 = t100 * acceleration[1] - t95 * acceleration[0] - 0.24 * t118;
+        let minus_rate_dot_1_leg2 = t85 * (t120 - t104 * t107);
+        let t125 = s2_leg2 * t105 - t107 * minus_rate_dot_1_leg2;
+        let minus_rate_dot_2_leg2 = t85
+            * (t114 * acceleration[0] - t82 * acceleration[1] + t105 + t118 * t107);
+        let t139 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
+        let t140 = parameters[16] * t125 - parameters[15] * minus_rate_dot_2_leg2
+            + parameters[17] * t120 + t139;
+        let t163 = 0.24 * s2_leg2
+            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t118
+                - parameters[18] * t120)
+            + t107
+                * (parameters[18] * t125
+                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t118));
+        let t165 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t203 - t179;
-        let t211 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t211 * t43;
-        let t216 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+            - parameters[10] * minus_rate_dot_1_leg2 + t163 - t139;
+        let t173 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let t176 = 4.166666666666667 / s2_leg3;
+        let g2_vy_leg3 = t173 * t176;
+        let t181 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
+        let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
+        let t192 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let g1_vx_leg3 = t192 * t176;
+        let t197 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let minus_g1_vy_leg3 = t197 * t176;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t222 = rate_1_leg3 * rate_1_leg3;
-        let t223 = 0.24 * t222;
-        let minus_g2_vx_leg3 = t216 * t43;
+        let t201 = rate_1_leg3 * rate_1_leg3;
+        let t202 = 0.24 * t201;
+        let minus_g2_vx_leg3 = t181 * t176;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t229 = rate_2_leg3 * rate_2_leg3;
-        let t230 = 0.24 * c2_leg3;
-        let rate_dot_2_leg3 = t43
-            * (t211 * acceleration[1] - t216 * acceleration[0] - t223 - t229 * t230);
-        let t240 = t57 * acceleration[0] - t42 * acceleration[1] + 0.24 * t229;
-        let rate_dot_1_leg3 = t43 * (t240 + t222 * t230);
-        let t246 = s2_leg3 * t223 + c2_leg3 * (0.24 * rate_dot_1_leg3);
-        let t252 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t253 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t246
-            - parameters[27] * t240 + t252;
-        let t276 = 0.24 * s2_leg3
-            * (parameters[28] * t240
-                - (parameters[26] * t229 + parameters[27] * rate_dot_2_leg3))
-            + t230
-                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t229
-                    + parameters[28] * t246);
-        let t278 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
+        let t208 = rate_2_leg3 * rate_2_leg3;
+        let t209 = 0.24 * c2_leg3;
+        let rate_dot_2_leg3 = t176
+            * (t173 * acceleration[1] - t181 * acceleration[0] - t202 - t208 * t209);
+        let t219 = t192 * acceleration[0] - t197 * acceleration[1] + 0.24 * t208;
+        let rate_dot_1_leg3 = t176 * (t219 + t201 * t209);
+        let t224 = s2_leg3 * t202 + t209 * rate_dot_1_leg3;
+        let t230 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
+        let t231 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t224
+            - parameters[27] * t219 + t230;
+        let t254 = 0.24 * s2_leg3
+            * (parameters[28] * t219
+                - (parameters[26] * t208 + parameters[27] * rate_dot_2_leg3))
+            + t209
+                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t208
+                    + parameters[28] * t224);
+        let t256 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t276 - t252;
-        let t281 = g1_vy_leg1 * t126 - minus_g2_vy_leg1 * t133 + g2_vy_leg2 * t180
-            - minus_g1_vy_leg2 * t205 + g2_vy_leg3 * t253 - minus_g1_vy_leg3 * t278;
-        let t294 = g2_vx_leg1 * t133 - minus_g1_vx_leg1 * t126 + g1_vx_leg2 * t205
-            - minus_g2_vx_leg2 * t180 + g1_vx_leg3 * t278 - minus_g2_vx_leg3 * t253;
-        let t296 = t294 + acceleration[0] * parameters[30];
-        let t299 = (t281 + acceleration[1] * parameters[30] + t296 * t67) / t69;
-        let t303 = t296 * t66 + t67 * t299;
+            + t254 - t230;
+        let t259 = g1_vy_leg1 * t68 - minus_g2_vy_leg1 * t75 + g2_vy_leg2 * t140
+            - minus_g1_vy_leg2 * t165 + g2_vy_leg3 * t231 - minus_g1_vy_leg3 * t256;
+        let t272 = g2_vx_leg1 * t75 - minus_g1_vx_leg1 * t68 + g1_vx_leg2 * t165
+            - minus_g2_vx_leg2 * t140 + g1_vx_leg3 * t256 - minus_g2_vx_leg3 * t231;
+        let t274 = t272 + acceleration[0] * parameters[30];
+        let t279 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t284 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t284, 26.146658848631333, "actuators")?;
+        let t285 = 1.0 / t284;
+        let t286 = t279 * t285;
+        let t295 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t279 * t286;
+        ::overact::guard::platform(t295, 26.146658848631322, "actuators")?;
+        let t296 = (t259 + acceleration[1] * parameters[30] + t274 * t286) / t295;
+        let t300 = t274 * t285 + t286 * t296;
         Ok([
-            g1_vy_leg1 * t299 - minus_g1_vx_leg1 * t303,
-            g1_vx_leg2 * t303 - minus_g1_vy_leg2 * t299,
-            g1_vx_leg3 * t303 - minus_g1_vy_leg3 * t299,
+            g1_vy_leg1 * t296 - minus_g1_vx_leg1 * t300,
+            g1_vx_leg2 * t300 - minus_g1_vy_leg2 * t296,
+            g1_vx_leg3 * t300 - minus_g1_vy_leg3 * t296,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3392,7 +3348,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 382 operations (151 additions, 223 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 388 intermediates.
+    /// 375 operations (151 additions, 216 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 381 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3415,187 +3371,184 @@ impl ThreeLegPoint {
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
         let t12 = 1.0 / t11;
         let g1_vy_leg1 = t10 * t12;
-        let t15 = pose[0] + 0.3031088913245535;
+        let t15 = pose[0] - 0.3031088913245535;
         let t17 = pose[1] + 0.175;
-        let t18 = 0.8660254037844386 * t17;
-        let t19 = 0.5 * t15 - t18;
-        let t22 = 0.5 * t17;
-        let t23 = 0.8660254037844386 * t15 + t22;
-        let t26 = t23 * t23 + t19 * t19;
-        let t28 = 0.0576 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t31 = 0.5 * t19 + t23 * t29;
-        let t32 = t19 - t31;
-        let t36 = t19 * t29 - 0.5 * t23;
-        let t37 = t23 + t36;
-        let t39 = 3.608439182435161 * t32 - 2.0833333333333335 * t37;
-        let t40 = t26 * t29;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let minus_g1_vy_leg2 = t39 * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t22;
-        let t50 = 0.5 * t45 + t18;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t47 + t50 * t56;
-        let t59 = t47 - t58;
-        let t63 = 0.5 * t50 - t47 * t56;
-        let t64 = t50 - t63;
-        let t66 = 2.0833333333333335 * t59 - 3.608439182435161 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let minus_g1_vy_leg3 = t66 * t68;
-        let t74 = 0.5 * pose[0] + t0 * t7;
-        let t75 = t74 - pose[0];
-        let minus_g1_vx_leg1 = t75 * t12;
-        let t80 = 3.608439182435161 * t37 + 2.0833333333333335 * t32;
-        let g1_vx_leg2 = t80 * t41;
-        let t86 = 3.608439182435161 * t59 + 2.0833333333333335 * t64;
-        let g1_vx_leg3 = t86 * t68;
-        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t19 = 0.5 * t15 + 0.8660254037844386 * t17;
+        let t20 = pose[0] - t19;
+        let t24 = 0.5 * t17;
+        let t25 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t24;
+        let t28 = t25 * t25 + t20 * t20;
+        let t30 = 0.0576 / t28 - 0.25;
+        ::overact::guard::reach(t30, "leg2")?;
+        let t31 = ::overact::math::sqrt(t30);
+        let t33 = 0.5 * t20 + t25 * t31;
+        let t34 = t20 - t33;
+        let t38 = t20 * t31 - 0.5 * t25;
+        let t39 = t25 + t38;
+        let t41 = 3.608439182435161 * t34 - 2.0833333333333335 * t39;
+        let t42 = t28 * t31;
+        ::overact::guard::leg(t42, 0.05748423696979895, "leg2")?;
+        let t43 = 0.24 / t42;
+        let minus_g1_vy_leg2 = t41 * t43;
+        let t48 = 0.8660254037844386 * t15 - t24;
+        let t52 = t48 * t48 + t19 * t19;
+        let t54 = 0.0576 / t52 - 0.25;
+        ::overact::guard::reach(t54, "leg3")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let t57 = 0.5 * t48 + t19 * t55;
+        let t58 = t48 - t57;
+        let t62 = 0.5 * t19 - t48 * t55;
+        let t63 = t19 - t62;
+        let t65 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
+        let t66 = t52 * t55;
+        ::overact::guard::leg(t66, 0.05748423696979895, "leg3")?;
+        let t67 = 0.24 / t66;
+        let minus_g1_vy_leg3 = t65 * t67;
+        let t73 = 0.5 * pose[0] + t0 * t7;
+        let t74 = t73 - pose[0];
+        let minus_g1_vx_leg1 = t74 * t12;
+        let t79 = 3.608439182435161 * t39 + 2.0833333333333335 * t34;
+        let g1_vx_leg2 = t79 * t43;
+        let t85 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
+        let g1_vx_leg3 = t85 * t67;
+        let t88 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t94 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t93 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = t89 * t95;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t109 = g1_vx_leg2 * actuator_velocities[1]
+        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
+        let t94 = 1.0 / t93;
+        let t95 = t88 * t94;
+        let t97 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t88 * t95;
+        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
+        let t98 = 1.0 / t97;
+        let t108 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t112 = t99
+        let t111 = t98
             * (g1_vy_leg1 * actuator_velocities[0]
                 - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t109 * t96);
-        let t116 = t109 * t95 + t96 * t112;
-        let rate_1_leg1 = g1_vy_leg1 * t112 - minus_g1_vx_leg1 * t116;
-        let t122 = 3.608439182435161 * t31 + 2.0833333333333335 * t36;
-        let g2_vy_leg2 = t122 * t41;
-        let t127 = 2.0833333333333335 * t31 - 3.608439182435161 * t36;
-        let minus_g2_vx_leg2 = t127 * t41;
-        let rate_2_leg2 = g2_vy_leg2 * t112 - minus_g2_vx_leg2 * t116;
-        let t131 = rate_2_leg2 * rate_2_leg2;
-        let t132 = 0.24 * t131;
-        let rate_1_leg2 = g1_vx_leg2 * t116 - minus_g1_vy_leg2 * t112;
-        let t136 = rate_1_leg2 * rate_1_leg2;
-        let t137 = t26 - 0.1152;
-        let t138 = 2.0833333333333335 * t137;
-        let t139 = t136 * t138;
-        let rate_dot_1_leg2 = t41 * (t132 + t139);
-        let t142 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t74 * t12;
+                - minus_g1_vy_leg3 * actuator_velocities[2] + t108 * t95);
+        let t115 = t108 * t94 + t95 * t111;
+        let rate_1_leg1 = g1_vy_leg1 * t111 - minus_g1_vx_leg1 * t115;
+        let t121 = 3.608439182435161 * t33 + 2.0833333333333335 * t38;
+        let g2_vy_leg2 = t121 * t43;
+        let t126 = 2.0833333333333335 * t33 - 3.608439182435161 * t38;
+        let minus_g2_vx_leg2 = t126 * t43;
+        let rate_2_leg2 = g2_vy_leg2 * t111 - minus_g2_vx_leg2 * t115;
+        let t130 = rate_2_leg2 * rate_2_leg2;
+        let t131 = 0.24 * t130;
+        let rate_1_leg2 = g1_vx_leg2 * t115 - minus_g1_vy_leg2 * t111;
+        let t135 = rate_1_leg2 * rate_1_leg2;
+        let t137 = 2.0833333333333335 * (t28 - 0.1152);
+        let t138 = t135 * t137;
+        let rate_dot_1_leg2 = t43 * (t131 + t138);
+        let t141 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t73 * t12;
         let minus_g2_vy_leg1 = t9 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t112;
-        let t149 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t150 = 0.0576 * t149;
-        let t151 = rate_1_leg1 * rate_1_leg1;
-        let t152 = t4 - 0.1152;
-        let t153 = 0.5 * t152;
-        let t154 = t151 * t153;
-        let rate_dot_1_leg1 = t12 * (t150 + t154);
-        let t157 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t162 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let g2_vy_leg3 = t162 * t68;
-        let t167 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let minus_g2_vx_leg3 = t167 * t68;
-        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t116;
-        let t171 = rate_2_leg3 * rate_2_leg3;
-        let t172 = 0.24 * t171;
-        let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t112;
-        let t176 = rate_1_leg3 * rate_1_leg3;
-        let t177 = t53 - 0.1152;
-        let t178 = 2.0833333333333335 * t177;
-        let t179 = t176 * t178;
-        let rate_dot_1_leg3 = t68 * (t172 + t179);
-        let t182 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t184 = g1_vx_leg2 * t142 - minus_g1_vx_leg1 * t157 + g1_vx_leg3 * t182;
-        let t193 = t99
-            * (g1_vy_leg1 * t157 - minus_g1_vy_leg2 * t142 - minus_g1_vy_leg3 * t182
-                + t96 * t184);
-        let t195 = t95 * t184 + t96 * t193;
-        let t199 = t75 * t195 - t10 * t193 - t150;
-        let minus_rate_dot_1_leg1 = t12 * (t199 - t154);
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t115 + minus_g2_vy_leg1 * t111;
+        let t148 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t149 = 0.0576 * t148;
+        let t150 = rate_1_leg1 * rate_1_leg1;
+        let t151 = t4 - 0.1152;
+        let t152 = 0.5 * t151;
+        let t153 = t150 * t152;
+        let rate_dot_1_leg1 = t12 * (t149 + t153);
+        let t156 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t161 = 2.0833333333333335 * t57 - 3.608439182435161 * t62;
+        let g2_vy_leg3 = t161 * t67;
+        let t166 = 3.608439182435161 * t57 + 2.0833333333333335 * t62;
+        let minus_g2_vx_leg3 = t166 * t67;
+        let rate_2_leg3 = g2_vy_leg3 * t111 - minus_g2_vx_leg3 * t115;
+        let t170 = rate_2_leg3 * rate_2_leg3;
+        let t171 = 0.24 * t170;
+        let rate_1_leg3 = g1_vx_leg3 * t115 - minus_g1_vy_leg3 * t111;
+        let t175 = rate_1_leg3 * rate_1_leg3;
+        let t177 = 2.0833333333333335 * (t52 - 0.1152);
+        let t178 = t175 * t177;
+        let rate_dot_1_leg3 = t67 * (t171 + t178);
+        let t181 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t183 = g1_vx_leg2 * t141 - minus_g1_vx_leg1 * t156 + g1_vx_leg3 * t181;
+        let t192 = t98
+            * (g1_vy_leg1 * t156 - minus_g1_vy_leg2 * t141 - minus_g1_vy_leg3 * t181
+                + t95 * t183);
+        let t194 = t94 * t183 + t95 * t192;
+        let t198 = t74 * t194 - t10 * t192 - t149;
+        let minus_rate_dot_1_leg1 = t12 * (t198 - t153);
+        let t208 = 4.166666666666667 * t11;
         let minus_rate_dot_2_leg1 = t12
-            * (t74 * t195 + t9 * t193 + 0.0576 * t151 + t149 * t153);
-        let t221 = 4.166666666666667 * t199;
-        let t230 = 4.166666666666667 * (t11 * t151)
-            - 2.0833333333333335 * (t152 * minus_rate_dot_1_leg1);
-        let t237 = 4.166666666666667 * t11
-            * (parameters[7] * minus_rate_dot_2_leg1 - t149 * parameters[6]
-                - parameters[8] * t221)
-            + 2.0833333333333335 * t152
-                * (parameters[8] * t230
-                    - (parameters[6] * minus_rate_dot_2_leg1 + t149 * parameters[7]));
-        let t240 = ::overact::math::signed(
+            * (t73 * t194 + t9 * t192 + 0.0576 * t150 + t148 * t152);
+        let t220 = 4.166666666666667 * t198;
+        let t224 = 2.0833333333333335 * t151;
+        let t227 = t150 * t208 - minus_rate_dot_1_leg1 * t224;
+        let t234 = t208
+            * (parameters[7] * minus_rate_dot_2_leg1 - t148 * parameters[6]
+                - parameters[8] * t220)
+            + t224
+                * (parameters[8] * t227
+                    - (parameters[6] * minus_rate_dot_2_leg1 + t148 * parameters[7]));
+        let t237 = ::overact::math::signed(
             parameters[9],
             rate_1_leg1 + minus_rate_2_leg1,
         );
-        let t241 = rate_1_leg1 * parameters[2] - parameters[1] * minus_rate_dot_1_leg1
+        let t238 = rate_1_leg1 * parameters[2] - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t237 + t240;
-        let t248 = parameters[6] * t230 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t221 - t240;
-        let t256 = t39 * t193 - t80 * t195 - t132;
-        let minus_rate_dot_1_leg2 = t41 * (t256 - t139);
-        let t261 = 4.166666666666667 * (t40 * t136)
-            - 2.0833333333333335 * (t137 * minus_rate_dot_1_leg2);
-        let minus_rate_dot_2_leg2 = t41
-            * (t127 * t195 - t122 * t193 + 0.24 * t136 + t131 * t138);
-        let t276 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t277 = parameters[16] * t261 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t256 + t276;
-        let t300 = 4.166666666666667 * t40
-            * (parameters[17] * minus_rate_dot_2_leg2 - t131 * parameters[16]
-                - parameters[18] * t256)
-            + t138
-                * (parameters[18] * t261
-                    - (parameters[16] * minus_rate_dot_2_leg2 + t131 * parameters[17]));
-        let t302 = rate_1_leg2 * parameters[12] - parameters[11] * minus_rate_dot_1_leg2
+            - parameters[0] * minus_rate_dot_1_leg1 + t234 + t237;
+        let t245 = parameters[6] * t227 - parameters[5] * minus_rate_dot_2_leg1
+            + parameters[7] * t220 - t237;
+        let t248 = 4.166666666666667 * t42;
+        let t253 = t41 * t192 - t79 * t194 - t131;
+        let minus_rate_dot_1_leg2 = t43 * (t253 - t138);
+        let t257 = t135 * t248 - t137 * minus_rate_dot_1_leg2;
+        let minus_rate_dot_2_leg2 = t43
+            * (t126 * t194 - t121 * t192 + 0.24 * t135 + t130 * t137);
+        let t272 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
+        let t273 = parameters[16] * t257 - parameters[15] * minus_rate_dot_2_leg2
+            + parameters[17] * t253 + t272;
+        let t295 = t248
+            * (parameters[17] * minus_rate_dot_2_leg2 - t130 * parameters[16]
+                - parameters[18] * t253)
+            + t137
+                * (parameters[18] * t257
+                    - (parameters[16] * minus_rate_dot_2_leg2 + t130 * parameters[17]));
+        let t297 = rate_1_leg2 * parameters[12] - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t300 - t276;
-        let rate_dot_2_leg3 = t68
-            * (t162 * t193 - t167 * t195 - 0.24 * t176 - t171 * t178);
-        let t320 = t86 * t195 - t66 * t193 + t172;
-        let rate_dot_1_leg3_2 = t68 * (t320 + t179);
-        let t325 = 4.166666666666667 * (t67 * t176)
-            + 2.0833333333333335 * (t177 * rate_dot_1_leg3_2);
-        let t331 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t332 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t325
-            - parameters[27] * t320 + t331;
-        let t355 = 4.166666666666667 * t67
-            * (parameters[28] * t320
-                - (t171 * parameters[26] + parameters[27] * rate_dot_2_leg3))
-            + t178
-                * (parameters[26] * rate_dot_2_leg3 - t171 * parameters[27]
-                    + parameters[28] * t325);
-        let t357 = parameters[20] * rate_dot_1_leg3_2
+            - parameters[10] * minus_rate_dot_1_leg2 + t295 - t272;
+        let rate_dot_2_leg3 = t67
+            * (t161 * t192 - t166 * t194 - 0.24 * t175 - t170 * t177);
+        let t310 = 4.166666666666667 * t66;
+        let t315 = t85 * t194 - t65 * t192 + t171;
+        let rate_dot_1_leg3_2 = t67 * (t315 + t178);
+        let t319 = t175 * t310 + t177 * rate_dot_1_leg3_2;
+        let t325 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
+        let t326 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t319
+            - parameters[27] * t315 + t325;
+        let t348 = t310
+            * (parameters[28] * t315
+                - (t170 * parameters[26] + parameters[27] * rate_dot_2_leg3))
+            + t177
+                * (parameters[26] * rate_dot_2_leg3 - t170 * parameters[27]
+                    + parameters[28] * t319);
+        let t350 = parameters[20] * rate_dot_1_leg3_2
             + parameters[21] * rate_dot_1_leg3_2 + rate_1_leg3 * parameters[22]
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t355 - t331;
-        let t360 = g1_vy_leg1 * t241 - minus_g2_vy_leg1 * t248 + g2_vy_leg2 * t277
-            - minus_g1_vy_leg2 * t302 + g2_vy_leg3 * t332 - minus_g1_vy_leg3 * t357;
-        let t373 = g1_vx_leg2 * t302 - minus_g2_vx_leg2 * t277
-            - (minus_g1_vx_leg1 * t241 + minus_g2_vx_leg1 * t248) + g1_vx_leg3 * t357
-            - minus_g2_vx_leg3 * t332;
-        let t375 = t373 + t195 * parameters[30];
-        let t378 = t99 * (t360 + t193 * parameters[30] + t96 * t375);
-        let t382 = t95 * t375 + t96 * t378;
+            + t348 - t325;
+        let t353 = g1_vy_leg1 * t238 - minus_g2_vy_leg1 * t245 + g2_vy_leg2 * t273
+            - minus_g1_vy_leg2 * t297 + g2_vy_leg3 * t326 - minus_g1_vy_leg3 * t350;
+        let t366 = g1_vx_leg2 * t297 - minus_g2_vx_leg2 * t273
+            - (minus_g1_vx_leg1 * t238 + minus_g2_vx_leg1 * t245) + g1_vx_leg3 * t350
+            - minus_g2_vx_leg3 * t326;
+        let t368 = t366 + t194 * parameters[30];
+        let t371 = t98 * (t353 + t192 * parameters[30] + t95 * t368);
+        let t375 = t94 * t368 + t95 * t371;
         Ok([
-            g1_vy_leg1 * t378 - minus_g1_vx_leg1 * t382,
-            g1_vx_leg2 * t382 - minus_g1_vy_leg2 * t378,
-            g1_vx_leg3 * t382 - minus_g1_vy_leg3 * t378,
+            g1_vy_leg1 * t371 - minus_g1_vx_leg1 * t375,
+            g1_vx_leg2 * t375 - minus_g1_vy_leg2 * t371,
+            g1_vx_leg3 * t375 - minus_g1_vy_leg3 * t371,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
@@ -3606,7 +3559,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2 x 2.
     ///
-    /// 261 operations (96 additions, 159 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 261 intermediates.
+    /// 254 operations (96 additions, 152 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 254 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3614,126 +3567,121 @@ impl ThreeLegPoint {
         pose: &[f64; 2],
         parameters: &[f64; 31],
     ) -> Result<[[f64; 2]; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 + t3;
-        let t6 = 0.8660254037844386 * t2;
-        let t7 = 0.5 * t0 - t6;
-        let t10 = t4 * t4 + t7 * t7;
-        let t12 = 0.0576 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg2")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = t7 * t13 - 0.5 * t4;
-        let t17 = t4 + t16;
-        let t21 = 0.5 * t7 + t4 * t13;
-        let t22 = t7 - t21;
-        let t24 = 3.608439182435161 * t17 + 2.0833333333333335 * t22;
-        let t25 = t10 * t13;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let g1_vx_leg2 = t24 * t26;
-        let t31 = 4.166666666666667 * t25;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t21 - 3.608439182435161 * t16)
-            * t26;
-        let t40 = t10 - 0.1152;
-        let t41 = 2.0833333333333335 * t40;
-        let t44 = 2.0833333333333335 * (t40 * g1_vx_leg2);
-        let t49 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
-            + t31 * (minus_g2_vx_leg2 * parameters[17] + t24 * parameters[18])
-            - t41 * (minus_g2_vx_leg2 * parameters[16] - parameters[18] * t44);
-        let t59 = pose[1] - 0.35;
-        let t62 = t59 * t59 + pose[0] * pose[0];
-        let t64 = 0.0576 / t62 - 0.25;
-        ::overact::guard::reach(t64, "leg1")?;
-        let t65 = ::overact::math::sqrt(t64);
-        let t67 = 0.5 * pose[0] + t59 * t65;
-        let t68 = t67 - pose[0];
-        let t69 = t62 * t65;
-        ::overact::guard::leg(t69, 0.05748423696979895, "leg1")?;
-        let t70 = 1.0 / t69;
-        let minus_g1_vx_leg1 = t68 * t70;
-        let t72 = 4.166666666666667 * t69;
-        let minus_g2_vx_leg1 = t67 * t70;
-        let s12_leg1 = 4.166666666666667 * t68;
-        let t79 = t62 - 0.1152;
-        let t80 = 2.0833333333333335 * t79;
-        let t83 = 2.0833333333333335 * (t79 * minus_g1_vx_leg1);
-        let t91 = t72 * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
-            - t80 * (minus_g2_vx_leg1 * parameters[6] + parameters[8] * t83)
+        let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
+        let t5 = pose[0] - 0.3031088913245535;
+        let t8 = 0.5 * t5 + 0.8660254037844386 * t2;
+        let t9 = pose[0] - t8;
+        let t12 = t4 * t4 + t9 * t9;
+        let t14 = 0.0576 / t12 - 0.25;
+        ::overact::guard::reach(t14, "leg2")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let t18 = t9 * t15 - 0.5 * t4;
+        let t19 = t4 + t18;
+        let t23 = 0.5 * t9 + t4 * t15;
+        let t24 = t9 - t23;
+        let t26 = 3.608439182435161 * t19 + 2.0833333333333335 * t24;
+        let t27 = t12 * t15;
+        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
+        let t28 = 0.24 / t27;
+        let g1_vx_leg2 = t26 * t28;
+        let t33 = 4.166666666666667 * t27;
+        let minus_g2_vx_leg2 = (2.0833333333333335 * t23 - 3.608439182435161 * t18)
+            * t28;
+        let t43 = 2.0833333333333335 * (t12 - 0.1152);
+        let t45 = g1_vx_leg2 * t43;
+        let t50 = g1_vx_leg2 * parameters[11] + g1_vx_leg2 * parameters[10]
+            + t33 * (minus_g2_vx_leg2 * parameters[17] + t26 * parameters[18])
+            - t43 * (minus_g2_vx_leg2 * parameters[16] - parameters[18] * t45);
+        let t60 = pose[1] - 0.35;
+        let t63 = t60 * t60 + pose[0] * pose[0];
+        let t65 = 0.0576 / t63 - 0.25;
+        ::overact::guard::reach(t65, "leg1")?;
+        let t66 = ::overact::math::sqrt(t65);
+        let t68 = 0.5 * pose[0] + t60 * t66;
+        let t69 = t68 - pose[0];
+        let t70 = t63 * t66;
+        ::overact::guard::leg(t70, 0.05748423696979895, "leg1")?;
+        let t71 = 1.0 / t70;
+        let minus_g1_vx_leg1 = t69 * t71;
+        let t73 = 4.166666666666667 * t70;
+        let minus_g2_vx_leg1 = t68 * t71;
+        let s12_leg1 = 4.166666666666667 * t69;
+        let t81 = 2.0833333333333335 * (t63 - 0.1152);
+        let t83 = minus_g1_vx_leg1 * t81;
+        let t91 = t73 * (minus_g2_vx_leg1 * parameters[7] - s12_leg1 * parameters[8])
+            - t81 * (minus_g2_vx_leg1 * parameters[6] + parameters[8] * t83)
             - (minus_g1_vx_leg1 * parameters[1] + minus_g1_vx_leg1 * parameters[0]);
-        let t100 = g1_vx_leg2 * t49
+        let t100 = g1_vx_leg2 * t50
             + minus_g2_vx_leg2
-                * (t24 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
-                    - parameters[16] * t44)
+                * (t26 * parameters[17] + minus_g2_vx_leg2 * parameters[15]
+                    - parameters[16] * t45)
             - (minus_g1_vx_leg1 * t91
                 + minus_g2_vx_leg1
                     * (s12_leg1 * parameters[7]
                         - (minus_g2_vx_leg1 * parameters[5] + parameters[6] * t83)));
-        let t101 = pose[0] - 0.3031088913245535;
-        let t103 = 0.8660254037844386 * t101 - t3;
-        let t106 = 0.5 * t101 + t6;
-        let t109 = t103 * t103 + t106 * t106;
-        let t111 = 0.0576 / t109 - 0.25;
-        ::overact::guard::reach(t111, "leg3")?;
-        let t112 = ::overact::math::sqrt(t111);
-        let t114 = 0.5 * t103 + t106 * t112;
-        let t115 = t103 - t114;
-        let t119 = 0.5 * t106 - t103 * t112;
-        let t120 = t106 - t119;
-        let t122 = 3.608439182435161 * t115 + 2.0833333333333335 * t120;
-        let t123 = t109 * t112;
-        ::overact::guard::leg(t123, 0.05748423696979895, "leg3")?;
-        let t124 = 0.24 / t123;
-        let g1_vx_leg3 = t122 * t124;
-        let t129 = 4.166666666666667 * t123;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t114 + 2.0833333333333335 * t119)
-            * t124;
-        let t138 = t109 - 0.1152;
-        let t139 = 2.0833333333333335 * t138;
-        let t141 = 2.0833333333333335 * (t138 * g1_vx_leg3);
-        let t147 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
-            + t129 * (t122 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
-            + t139 * (parameters[28] * t141 - minus_g2_vx_leg3 * parameters[26]);
-        let t157 = t100 + g1_vx_leg3 * t147
+        let t102 = 0.8660254037844386 * t5 - t3;
+        let t106 = t102 * t102 + t8 * t8;
+        let t108 = 0.0576 / t106 - 0.25;
+        ::overact::guard::reach(t108, "leg3")?;
+        let t109 = ::overact::math::sqrt(t108);
+        let t111 = 0.5 * t102 + t8 * t109;
+        let t112 = t102 - t111;
+        let t116 = 0.5 * t8 - t102 * t109;
+        let t117 = t8 - t116;
+        let t119 = 3.608439182435161 * t112 + 2.0833333333333335 * t117;
+        let t120 = t106 * t109;
+        ::overact::guard::leg(t120, 0.05748423696979895, "leg3")?;
+        let t121 = 0.24 / t120;
+        let g1_vx_leg3 = t119 * t121;
+        let t126 = 4.166666666666667 * t120;
+        let minus_g2_vx_leg3 = (3.608439182435161 * t111 + 2.0833333333333335 * t116)
+            * t121;
+        let t136 = 2.0833333333333335 * (t106 - 0.1152);
+        let t137 = g1_vx_leg3 * t136;
+        let t143 = g1_vx_leg3 * parameters[20] + g1_vx_leg3 * parameters[21]
+            + t126 * (t119 * parameters[28] + minus_g2_vx_leg3 * parameters[27])
+            + t136 * (parameters[28] * t137 - minus_g2_vx_leg3 * parameters[26]);
+        let t153 = t100 + g1_vx_leg3 * t143
             - minus_g2_vx_leg3
-                * (parameters[26] * t141 - minus_g2_vx_leg3 * parameters[25]
-                    - t122 * parameters[27]) + parameters[30];
-        let g2_vy_leg3 = (2.0833333333333335 * t114 - 3.608439182435161 * t119) * t124;
-        let t165 = 2.0833333333333335 * t115 - 3.608439182435161 * t120;
-        let minus_g1_vy_leg3 = t165 * t124;
-        let t168 = 2.0833333333333335 * (t138 * minus_g1_vy_leg3);
-        let t180 = t139 * (g2_vy_leg3 * parameters[26] - parameters[28] * t168)
-            - t129 * (t165 * parameters[28] + g2_vy_leg3 * parameters[27])
+                * (parameters[26] * t137 - minus_g2_vx_leg3 * parameters[25]
+                    - t119 * parameters[27]) + parameters[30];
+        let g2_vy_leg3 = (2.0833333333333335 * t111 - 3.608439182435161 * t116) * t121;
+        let t161 = 2.0833333333333335 * t112 - 3.608439182435161 * t117;
+        let minus_g1_vy_leg3 = t161 * t121;
+        let t163 = t136 * minus_g1_vy_leg3;
+        let t175 = t136 * (g2_vy_leg3 * parameters[26] - parameters[28] * t163)
+            - t126 * (t161 * parameters[28] + g2_vy_leg3 * parameters[27])
             - (minus_g1_vy_leg3 * parameters[20] + minus_g1_vy_leg3 * parameters[21]);
-        let t186 = g2_vy_leg3 * parameters[25] - parameters[26] * t168
-            + t165 * parameters[27];
-        let t191 = 3.608439182435161 * t22 - 2.0833333333333335 * t17;
-        let minus_g1_vy_leg2 = t191 * t26;
-        let g2_vy_leg2 = (3.608439182435161 * t21 + 2.0833333333333335 * t16) * t26;
-        let t205 = 2.0833333333333335 * (t40 * minus_g1_vy_leg2);
-        let t211 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
-            + t31 * (g2_vy_leg2 * parameters[17] + t191 * parameters[18])
-            + t41 * (parameters[18] * t205 - g2_vy_leg2 * parameters[16]);
-        let t217 = t191 * parameters[17]
-            - (parameters[16] * t205 - g2_vy_leg2 * parameters[15]);
-        let t222 = 0.5 * t59 - pose[0] * t65;
-        let t223 = t59 - t222;
-        let g1_vy_leg1 = t223 * t70;
-        let minus_g2_vy_leg1 = t222 * t70;
-        let c12_leg1 = 4.166666666666667 * t223;
-        let t236 = 2.0833333333333335 * (t79 * g1_vy_leg1);
-        let t241 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
-            + t72 * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
-            - t80 * (minus_g2_vy_leg1 * parameters[6] - parameters[8] * t236);
-        let t247 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
-            - parameters[6] * t236;
-        let t251 = g1_vx_leg3 * t180 - minus_g2_vx_leg3 * t186
-            - (g1_vx_leg2 * t211 + minus_g2_vx_leg2 * t217 + minus_g1_vx_leg1 * t241
-                - minus_g2_vx_leg1 * t247);
-        let t262 = g1_vy_leg1 * t241 + minus_g2_vy_leg1 * t247 + g2_vy_leg2 * t217
-            + minus_g1_vy_leg2 * t211 + g2_vy_leg3 * t186 - minus_g1_vy_leg3 * t180;
-        Ok([[t157, t251], [t251, t262 + parameters[30]]])
+        let t181 = g2_vy_leg3 * parameters[25] - parameters[26] * t163
+            + t161 * parameters[27];
+        let t186 = 3.608439182435161 * t24 - 2.0833333333333335 * t19;
+        let minus_g1_vy_leg2 = t186 * t28;
+        let g2_vy_leg2 = (3.608439182435161 * t23 + 2.0833333333333335 * t18) * t28;
+        let t199 = t43 * minus_g1_vy_leg2;
+        let t205 = minus_g1_vy_leg2 * parameters[11] + minus_g1_vy_leg2 * parameters[10]
+            + t33 * (g2_vy_leg2 * parameters[17] + t186 * parameters[18])
+            + t43 * (parameters[18] * t199 - g2_vy_leg2 * parameters[16]);
+        let t211 = t186 * parameters[17]
+            - (parameters[16] * t199 - g2_vy_leg2 * parameters[15]);
+        let t216 = 0.5 * t60 - pose[0] * t66;
+        let t217 = t60 - t216;
+        let g1_vy_leg1 = t217 * t71;
+        let minus_g2_vy_leg1 = t216 * t71;
+        let c12_leg1 = 4.166666666666667 * t217;
+        let t229 = t81 * g1_vy_leg1;
+        let t234 = g1_vy_leg1 * parameters[1] + g1_vy_leg1 * parameters[0]
+            + t73 * (minus_g2_vy_leg1 * parameters[7] + c12_leg1 * parameters[8])
+            - t81 * (minus_g2_vy_leg1 * parameters[6] - parameters[8] * t229);
+        let t240 = c12_leg1 * parameters[7] + minus_g2_vy_leg1 * parameters[5]
+            - parameters[6] * t229;
+        let t244 = g1_vx_leg3 * t175 - minus_g2_vx_leg3 * t181
+            - (g1_vx_leg2 * t205 + minus_g2_vx_leg2 * t211 + minus_g1_vx_leg1 * t234
+                - minus_g2_vx_leg1 * t240);
+        let t255 = g1_vy_leg1 * t234 + minus_g2_vy_leg1 * t240 + g2_vy_leg2 * t211
+            + minus_g1_vy_leg2 * t205 + g2_vy_leg3 * t181 - minus_g1_vy_leg3 * t175;
+        Ok([[t153, t244], [t244, t255 + parameters[30]]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -3744,7 +3692,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 2.
     ///
-    /// 266 operations (104 additions, 156 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 273 intermediates.
+    /// 265 operations (104 additions, 155 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 6 signs, 272 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3753,136 +3701,134 @@ impl ThreeLegPoint {
         twist: &[f64; 2],
         parameters: &[f64; 31],
     ) -> Result<[f64; 2], ::overact::Error> {
-        let t0 = pose[0] + 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
-        let t4 = 0.8660254037844386 * t0 + t3;
-        let t6 = 0.8660254037844386 * t2;
-        let t7 = 0.5 * t0 - t6;
-        let t10 = t4 * t4 + t7 * t7;
-        let t12 = 0.0576 / t10 - 0.25;
-        ::overact::guard::reach(t12, "leg2")?;
-        let t13 = ::overact::math::sqrt(t12);
-        let t16 = t7 * t13 - 0.5 * t4;
-        let t17 = t4 + t16;
-        let t21 = 0.5 * t7 + t4 * t13;
-        let t22 = t7 - t21;
-        let t25 = t10 * t13;
-        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
-        let t26 = 0.24 / t25;
-        let g1_vx_leg2 = (3.608439182435161 * t17 + 2.0833333333333335 * t22) * t26;
-        let g2_vy_leg2 = (3.608439182435161 * t21 + 2.0833333333333335 * t16) * t26;
-        let minus_g2_vx_leg2 = (2.0833333333333335 * t21 - 3.608439182435161 * t16)
-            * t26;
+        let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
+        let t5 = pose[0] - 0.3031088913245535;
+        let t8 = 0.5 * t5 + 0.8660254037844386 * t2;
+        let t9 = pose[0] - t8;
+        let t12 = t4 * t4 + t9 * t9;
+        let t14 = 0.0576 / t12 - 0.25;
+        ::overact::guard::reach(t14, "leg2")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let t18 = t9 * t15 - 0.5 * t4;
+        let t19 = t4 + t18;
+        let t23 = 0.5 * t9 + t4 * t15;
+        let t24 = t9 - t23;
+        let t27 = t12 * t15;
+        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
+        let t28 = 0.24 / t27;
+        let g1_vx_leg2 = (3.608439182435161 * t19 + 2.0833333333333335 * t24) * t28;
+        let g2_vy_leg2 = (3.608439182435161 * t23 + 2.0833333333333335 * t18) * t28;
+        let minus_g2_vx_leg2 = (2.0833333333333335 * t23 - 3.608439182435161 * t18)
+            * t28;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t39 = rate_2_leg2 * rate_2_leg2;
-        let t40 = 0.24 * t39;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t22 - 2.0833333333333335 * t17)
-            * t26;
+        let t41 = rate_2_leg2 * rate_2_leg2;
+        let t42 = 0.24 * t41;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t24 - 2.0833333333333335 * t19)
+            * t28;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t48 = rate_1_leg2 * rate_1_leg2;
-        let t50 = 2.0833333333333335 * (t10 - 0.1152);
-        let rate_dot_1_leg2 = t26 * (t40 + t48 * t50);
-        let minus_rate_dot_2_leg2 = t26 * (0.24 * t48 + t39 * t50);
-        let t75 = parameters[16] * minus_rate_dot_2_leg2;
-        let t76 = parameters[17] * t39;
-        let t80 = 4.166666666666667 * t25
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t39
-                + parameters[18] * t40)
-            + t50 * (parameters[18] * (0.24 * minus_rate_dot_2_leg2) - (t75 + t76));
-        let t83 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t84 = parameters[10] * rate_dot_1_leg2 + parameters[11] * rate_dot_1_leg2
+        let t50 = rate_1_leg2 * rate_1_leg2;
+        let t52 = 2.0833333333333335 * (t12 - 0.1152);
+        let rate_dot_1_leg2 = t28 * (t42 + t50 * t52);
+        let minus_rate_dot_2_leg2 = t28 * (0.24 * t50 + t41 * t52);
+        let t77 = parameters[16] * minus_rate_dot_2_leg2;
+        let t78 = parameters[17] * t41;
+        let t82 = 4.166666666666667 * t27
+            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t41
+                + parameters[18] * t42)
+            + t52 * (parameters[18] * (0.24 * minus_rate_dot_2_leg2) - (t77 + t78));
+        let t85 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
+        let t86 = parameters[10] * rate_dot_1_leg2 + parameters[11] * rate_dot_1_leg2
             + parameters[12] * rate_1_leg2
-            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14] + t80
-            - t83;
-        let t91 = 0.24 * t75 - parameters[15] * minus_rate_dot_2_leg2 - 0.24 * t76 + t83;
-        let t95 = pose[1] - 0.35;
-        let t98 = t95 * t95 + pose[0] * pose[0];
-        let t100 = 0.0576 / t98 - 0.25;
-        ::overact::guard::reach(t100, "leg1")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let t103 = 0.5 * pose[0] + t95 * t101;
-        let t105 = t98 * t101;
-        ::overact::guard::leg(t105, 0.05748423696979895, "leg1")?;
-        let t106 = 1.0 / t105;
-        let minus_g1_vx_leg1 = (t103 - pose[0]) * t106;
-        let minus_g2_vx_leg1 = t103 * t106;
-        let t112 = 0.5 * t95 - pose[0] * t101;
-        let minus_g2_vy_leg1 = t112 * t106;
+            + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14] + t82
+            - t85;
+        let t93 = 0.24 * t77 - parameters[15] * minus_rate_dot_2_leg2 - 0.24 * t78 + t85;
+        let t97 = pose[1] - 0.35;
+        let t100 = t97 * t97 + pose[0] * pose[0];
+        let t102 = 0.0576 / t100 - 0.25;
+        ::overact::guard::reach(t102, "leg1")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t105 = 0.5 * pose[0] + t97 * t103;
+        let t107 = t100 * t103;
+        ::overact::guard::leg(t107, 0.05748423696979895, "leg1")?;
+        let t108 = 1.0 / t107;
+        let minus_g1_vx_leg1 = (t105 - pose[0]) * t108;
+        let minus_g2_vx_leg1 = t105 * t108;
+        let t114 = 0.5 * t97 - pose[0] * t103;
+        let minus_g2_vy_leg1 = t114 * t108;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t116 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let g1_vy_leg1 = (t95 - t112) * t106;
+        let t118 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let g1_vy_leg1 = (t97 - t114) * t108;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t123 = rate_1_leg1 * rate_1_leg1;
-        let t124 = t98 - 0.1152;
-        let t125 = 0.5 * t124;
-        let rate_dot_1_leg1 = t106 * (0.0576 * t116 + t123 * t125);
-        let minus_rate_dot_2_leg1 = t106 * (0.0576 * t123 + t116 * t125);
-        let t152 = parameters[6] * minus_rate_dot_2_leg1;
-        let t153 = parameters[7] * t116;
-        let t157 = 4.166666666666667 * t105
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t116
-                + parameters[8] * (0.24 * t116))
-            + 2.0833333333333335 * t124
-                * (parameters[8] * (0.24 * minus_rate_dot_2_leg1) - (t152 + t153));
-        let t160 = ::overact::math::signed(
+        let t125 = rate_1_leg1 * rate_1_leg1;
+        let t126 = t100 - 0.1152;
+        let t127 = 0.5 * t126;
+        let rate_dot_1_leg1 = t108 * (0.0576 * t118 + t125 * t127);
+        let minus_rate_dot_2_leg1 = t108 * (0.0576 * t125 + t118 * t127);
+        let t154 = parameters[6] * minus_rate_dot_2_leg1;
+        let t155 = parameters[7] * t118;
+        let t159 = 4.166666666666667 * t107
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t118
+                + parameters[8] * (0.24 * t118))
+            + 2.0833333333333335 * t126
+                * (parameters[8] * (0.24 * minus_rate_dot_2_leg1) - (t154 + t155));
+        let t162 = ::overact::math::signed(
             parameters[9],
             rate_1_leg1 + minus_rate_2_leg1,
         );
-        let t161 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+        let t163 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t157
-            + t160;
-        let t168 = 0.24 * t152 - parameters[5] * minus_rate_dot_2_leg1 - 0.24 * t153
-            - t160;
-        let t172 = pose[0] - 0.3031088913245535;
-        let t174 = 0.8660254037844386 * t172 - t3;
-        let t177 = 0.5 * t172 + t6;
-        let t180 = t174 * t174 + t177 * t177;
-        let t182 = 0.0576 / t180 - 0.25;
-        ::overact::guard::reach(t182, "leg3")?;
-        let t183 = ::overact::math::sqrt(t182);
-        let t185 = 0.5 * t174 + t177 * t183;
-        let t186 = t174 - t185;
-        let t190 = 0.5 * t177 - t174 * t183;
-        let t191 = t177 - t190;
-        let t194 = t180 * t183;
-        ::overact::guard::leg(t194, 0.05748423696979895, "leg3")?;
-        let t195 = 0.24 / t194;
-        let g1_vx_leg3 = (3.608439182435161 * t186 + 2.0833333333333335 * t191) * t195;
-        let g2_vy_leg3 = (2.0833333333333335 * t185 - 3.608439182435161 * t190) * t195;
-        let minus_g2_vx_leg3 = (3.608439182435161 * t185 + 2.0833333333333335 * t190)
-            * t195;
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t159
+            + t162;
+        let t170 = 0.24 * t154 - parameters[5] * minus_rate_dot_2_leg1 - 0.24 * t155
+            - t162;
+        let t175 = 0.8660254037844386 * t5 - t3;
+        let t179 = t175 * t175 + t8 * t8;
+        let t181 = 0.0576 / t179 - 0.25;
+        ::overact::guard::reach(t181, "leg3")?;
+        let t182 = ::overact::math::sqrt(t181);
+        let t184 = 0.5 * t175 + t8 * t182;
+        let t185 = t175 - t184;
+        let t189 = 0.5 * t8 - t175 * t182;
+        let t190 = t8 - t189;
+        let t193 = t179 * t182;
+        ::overact::guard::leg(t193, 0.05748423696979895, "leg3")?;
+        let t194 = 0.24 / t193;
+        let g1_vx_leg3 = (3.608439182435161 * t185 + 2.0833333333333335 * t190) * t194;
+        let g2_vy_leg3 = (2.0833333333333335 * t184 - 3.608439182435161 * t189) * t194;
+        let minus_g2_vx_leg3 = (3.608439182435161 * t184 + 2.0833333333333335 * t189)
+            * t194;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t208 = rate_2_leg3 * rate_2_leg3;
-        let t209 = 0.24 * t208;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t186 - 3.608439182435161 * t191)
-            * t195;
+        let t207 = rate_2_leg3 * rate_2_leg3;
+        let t208 = 0.24 * t207;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t185 - 3.608439182435161 * t190)
+            * t194;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t217 = rate_1_leg3 * rate_1_leg3;
-        let t219 = 2.0833333333333335 * (t180 - 0.1152);
-        let rate_dot_1_leg3 = t195 * (t209 + t217 * t219);
-        let minus_rate_dot_2_leg3 = t195 * (0.24 * t217 + t208 * t219);
-        let t244 = parameters[26] * minus_rate_dot_2_leg3;
-        let t245 = parameters[27] * t208;
-        let t249 = 4.166666666666667 * t194
-            * (parameters[27] * minus_rate_dot_2_leg3 - parameters[26] * t208
-                + parameters[28] * t209)
-            + t219 * (parameters[28] * (0.24 * minus_rate_dot_2_leg3) - (t244 + t245));
-        let t252 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t253 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
+        let t216 = rate_1_leg3 * rate_1_leg3;
+        let t218 = 2.0833333333333335 * (t179 - 0.1152);
+        let rate_dot_1_leg3 = t194 * (t208 + t216 * t218);
+        let minus_rate_dot_2_leg3 = t194 * (0.24 * t216 + t207 * t218);
+        let t243 = parameters[26] * minus_rate_dot_2_leg3;
+        let t244 = parameters[27] * t207;
+        let t248 = 4.166666666666667 * t193
+            * (parameters[27] * minus_rate_dot_2_leg3 - parameters[26] * t207
+                + parameters[28] * t208)
+            + t218 * (parameters[28] * (0.24 * minus_rate_dot_2_leg3) - (t243 + t244));
+        let t251 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
+        let t252 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t249 - t252;
-        let t260 = 0.24 * t244 - parameters[25] * minus_rate_dot_2_leg3 - 0.24 * t245
-            + t252;
-        let t263 = g1_vx_leg2 * t84 - minus_g2_vx_leg2 * t91
-            - (minus_g1_vx_leg1 * t161 + minus_g2_vx_leg1 * t168) + g1_vx_leg3 * t253
-            - minus_g2_vx_leg3 * t260;
-        let t274 = g1_vy_leg1 * t161 - minus_g2_vy_leg1 * t168 + g2_vy_leg2 * t91
-            - minus_g1_vy_leg2 * t84 + g2_vy_leg3 * t260 - minus_g1_vy_leg3 * t253;
-        Ok([t263, t274])
+            + t248 - t251;
+        let t259 = 0.24 * t243 - parameters[25] * minus_rate_dot_2_leg3 - 0.24 * t244
+            + t251;
+        let t262 = g1_vx_leg2 * t86 - minus_g2_vx_leg2 * t93
+            - (minus_g1_vx_leg1 * t163 + minus_g2_vx_leg1 * t170) + g1_vx_leg3 * t252
+            - minus_g2_vx_leg3 * t259;
+        let t273 = g1_vy_leg1 * t163 - minus_g2_vy_leg1 * t170 + g2_vy_leg2 * t93
+            - minus_g1_vy_leg2 * t86 + g2_vy_leg3 * t259 - minus_g1_vy_leg3 * t252;
+        Ok([t262, t273])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -3895,7 +3841,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 367 operations (142 additions, 216 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 374 intermediates.
+    /// 360 operations (142 additions, 209 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 367 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3917,170 +3863,167 @@ impl ThreeLegPoint {
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
         let t12 = 1.0 / t11;
         let g1_vy_leg1 = t10 * t12;
-        let t15 = pose[0] + 0.3031088913245535;
+        let t15 = pose[0] - 0.3031088913245535;
         let t17 = pose[1] + 0.175;
-        let t18 = 0.8660254037844386 * t17;
-        let t19 = 0.5 * t15 - t18;
-        let t22 = 0.5 * t17;
-        let t23 = 0.8660254037844386 * t15 + t22;
-        let t26 = t23 * t23 + t19 * t19;
-        let t28 = 0.0576 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t31 = 0.5 * t19 + t23 * t29;
-        let t32 = t19 - t31;
-        let t36 = t19 * t29 - 0.5 * t23;
-        let t37 = t23 + t36;
-        let t39 = 3.608439182435161 * t32 - 2.0833333333333335 * t37;
-        let t40 = t26 * t29;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let minus_g1_vy_leg2 = t39 * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t22;
-        let t50 = 0.5 * t45 + t18;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = 0.5 * t47 + t50 * t56;
-        let t59 = t47 - t58;
-        let t63 = 0.5 * t50 - t47 * t56;
-        let t64 = t50 - t63;
-        let t66 = 2.0833333333333335 * t59 - 3.608439182435161 * t64;
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let minus_g1_vy_leg3 = t66 * t68;
-        let t74 = 0.5 * pose[0] + t0 * t7;
-        let t75 = t74 - pose[0];
-        let minus_g1_vx_leg1 = t75 * t12;
-        let t80 = 3.608439182435161 * t37 + 2.0833333333333335 * t32;
-        let g1_vx_leg2 = t80 * t41;
-        let t86 = 3.608439182435161 * t59 + 2.0833333333333335 * t64;
-        let g1_vx_leg3 = t86 * t68;
-        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t19 = 0.5 * t15 + 0.8660254037844386 * t17;
+        let t20 = pose[0] - t19;
+        let t24 = 0.5 * t17;
+        let t25 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t24;
+        let t28 = t25 * t25 + t20 * t20;
+        let t30 = 0.0576 / t28 - 0.25;
+        ::overact::guard::reach(t30, "leg2")?;
+        let t31 = ::overact::math::sqrt(t30);
+        let t33 = 0.5 * t20 + t25 * t31;
+        let t34 = t20 - t33;
+        let t38 = t20 * t31 - 0.5 * t25;
+        let t39 = t25 + t38;
+        let t41 = 3.608439182435161 * t34 - 2.0833333333333335 * t39;
+        let t42 = t28 * t31;
+        ::overact::guard::leg(t42, 0.05748423696979895, "leg2")?;
+        let t43 = 0.24 / t42;
+        let minus_g1_vy_leg2 = t41 * t43;
+        let t48 = 0.8660254037844386 * t15 - t24;
+        let t52 = t48 * t48 + t19 * t19;
+        let t54 = 0.0576 / t52 - 0.25;
+        ::overact::guard::reach(t54, "leg3")?;
+        let t55 = ::overact::math::sqrt(t54);
+        let t57 = 0.5 * t48 + t19 * t55;
+        let t58 = t48 - t57;
+        let t62 = 0.5 * t19 - t48 * t55;
+        let t63 = t19 - t62;
+        let t65 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
+        let t66 = t52 * t55;
+        ::overact::guard::leg(t66, 0.05748423696979895, "leg3")?;
+        let t67 = 0.24 / t66;
+        let minus_g1_vy_leg3 = t65 * t67;
+        let t73 = 0.5 * pose[0] + t0 * t7;
+        let t74 = t73 - pose[0];
+        let minus_g1_vx_leg1 = t74 * t12;
+        let t79 = 3.608439182435161 * t39 + 2.0833333333333335 * t34;
+        let g1_vx_leg2 = t79 * t43;
+        let t85 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
+        let g1_vx_leg3 = t85 * t67;
+        let t88 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t94 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t93 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = t89 * t95;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = 1.0 / t98;
+        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
+        let t94 = 1.0 / t93;
+        let t95 = t88 * t94;
+        let t97 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t88 * t95;
+        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t97, 26.146658848896372, "actuators")?;
+        let t98 = 1.0 / t97;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let minus_g2_vx_leg1 = t74 * t12;
+        let minus_g2_vx_leg1 = t73 * t12;
         let minus_g2_vy_leg1 = t9 * t12;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * twist[0]
             + minus_g2_vy_leg1 * twist[1];
-        let t112 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t114 = t75 * acceleration[0] - t10 * acceleration[1] - 0.0576 * t112;
-        let t115 = rate_1_leg1 * rate_1_leg1;
-        let t116 = t4 - 0.1152;
-        let t117 = 0.5 * t116;
-        let minus_rate_dot_1_leg1 = t12 * (t114 - t115 * t117);
+        let t111 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t113 = t74 * acceleration[0] - t10 * acceleration[1] - 0.0576 * t111;
+        let t114 = rate_1_leg1 * rate_1_leg1;
+        let t115 = t4 - 0.1152;
+        let t116 = 0.5 * t115;
+        let minus_rate_dot_1_leg1 = t12 * (t113 - t114 * t116);
+        let t127 = 4.166666666666667 * t11;
         let minus_rate_dot_2_leg1 = t12
-            * (t74 * acceleration[0] + t9 * acceleration[1] + 0.0576 * t115
-                + t112 * t117);
-        let t140 = 4.166666666666667 * t114;
-        let t149 = 4.166666666666667 * (t11 * t115)
-            - 2.0833333333333335 * (t116 * minus_rate_dot_1_leg1);
-        let t156 = 4.166666666666667 * t11
-            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t112
-                - parameters[8] * t140)
-            + 2.0833333333333335 * t116
-                * (parameters[8] * t149
-                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t112));
-        let t159 = ::overact::math::signed(
+            * (t73 * acceleration[0] + t9 * acceleration[1] + 0.0576 * t114
+                + t111 * t116);
+        let t139 = 4.166666666666667 * t113;
+        let t143 = 2.0833333333333335 * t115;
+        let t146 = t114 * t127 - minus_rate_dot_1_leg1 * t143;
+        let t153 = t127
+            * (parameters[7] * minus_rate_dot_2_leg1 - parameters[6] * t111
+                - parameters[8] * t139)
+            + t143
+                * (parameters[8] * t146
+                    - (parameters[6] * minus_rate_dot_2_leg1 + parameters[7] * t111));
+        let t156 = ::overact::math::signed(
             parameters[9],
             rate_1_leg1 + minus_rate_2_leg1,
         );
-        let t160 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
+        let t157 = parameters[2] * rate_1_leg1 - parameters[1] * minus_rate_dot_1_leg1
             + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4]
-            - parameters[0] * minus_rate_dot_1_leg1 + t156 + t159;
-        let t167 = parameters[6] * t149 - parameters[5] * minus_rate_dot_2_leg1
-            + parameters[7] * t140 - t159;
-        let t172 = 3.608439182435161 * t31 + 2.0833333333333335 * t36;
-        let g2_vy_leg2 = t172 * t41;
+            - parameters[0] * minus_rate_dot_1_leg1 + t153 + t156;
+        let t164 = parameters[6] * t146 - parameters[5] * minus_rate_dot_2_leg1
+            + parameters[7] * t139 - t156;
+        let t169 = 3.608439182435161 * t33 + 2.0833333333333335 * t38;
+        let g2_vy_leg2 = t169 * t43;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t177 = rate_1_leg2 * rate_1_leg2;
-        let t180 = t26 - 0.1152;
-        let t187 = 2.0833333333333335 * t31 - 3.608439182435161 * t36;
-        let minus_g2_vx_leg2 = t187 * t41;
+        let t174 = rate_1_leg2 * rate_1_leg2;
+        let t175 = 4.166666666666667 * t42;
+        let t178 = 2.0833333333333335 * (t28 - 0.1152);
+        let t185 = 2.0833333333333335 * t33 - 3.608439182435161 * t38;
+        let minus_g2_vx_leg2 = t185 * t43;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t191 = rate_2_leg2 * rate_2_leg2;
-        let t193 = t39 * acceleration[1] - t80 * acceleration[0] - 0.24 * t191;
-        let t194 = 2.0833333333333335 * t180;
-        let minus_rate_dot_1_leg2 = t41 * (t193 - t177 * t194);
-        let t200 = 4.166666666666667 * (t40 * t177)
-            - 2.0833333333333335 * (t180 * minus_rate_dot_1_leg2);
-        let minus_rate_dot_2_leg2 = t41
-            * (t187 * acceleration[0] - t172 * acceleration[1] + 0.24 * t177
-                + t191 * t194);
-        let t215 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
-        let t216 = parameters[16] * t200 - parameters[15] * minus_rate_dot_2_leg2
-            + parameters[17] * t193 + t215;
-        let t239 = 4.166666666666667 * t40
-            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t191
-                - parameters[18] * t193)
-            + t194
-                * (parameters[18] * t200
-                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t191));
-        let t241 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
+        let t189 = rate_2_leg2 * rate_2_leg2;
+        let t191 = t41 * acceleration[1] - t79 * acceleration[0] - 0.24 * t189;
+        let minus_rate_dot_1_leg2 = t43 * (t191 - t174 * t178);
+        let t196 = t174 * t175 - t178 * minus_rate_dot_1_leg2;
+        let minus_rate_dot_2_leg2 = t43
+            * (t185 * acceleration[0] - t169 * acceleration[1] + 0.24 * t174
+                + t189 * t178);
+        let t211 = ::overact::math::signed(parameters[19], rate_2_leg2 - rate_1_leg2);
+        let t212 = parameters[16] * t196 - parameters[15] * minus_rate_dot_2_leg2
+            + parameters[17] * t191 + t211;
+        let t234 = t175
+            * (parameters[17] * minus_rate_dot_2_leg2 - parameters[16] * t189
+                - parameters[18] * t191)
+            + t178
+                * (parameters[18] * t196
+                    - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t189));
+        let t236 = parameters[12] * rate_1_leg2 - parameters[11] * minus_rate_dot_1_leg2
             + ::overact::math::signed(parameters[13], rate_1_leg2) + parameters[14]
-            - parameters[10] * minus_rate_dot_1_leg2 + t239 - t215;
-        let t247 = 2.0833333333333335 * t58 - 3.608439182435161 * t63;
-        let g2_vy_leg3 = t247 * t68;
-        let t252 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
+            - parameters[10] * minus_rate_dot_1_leg2 + t234 - t211;
+        let t242 = 2.0833333333333335 * t57 - 3.608439182435161 * t62;
+        let g2_vy_leg3 = t242 * t67;
+        let t247 = 3.608439182435161 * t57 + 2.0833333333333335 * t62;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t258 = rate_1_leg3 * rate_1_leg3;
-        let minus_g2_vx_leg3 = t252 * t68;
+        let t253 = rate_1_leg3 * rate_1_leg3;
+        let minus_g2_vx_leg3 = t247 * t67;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t265 = rate_2_leg3 * rate_2_leg3;
-        let t266 = t53 - 0.1152;
-        let t267 = 2.0833333333333335 * t266;
-        let rate_dot_2_leg3 = t68
-            * (t247 * acceleration[1] - t252 * acceleration[0] - 0.24 * t258
-                - t265 * t267);
-        let t278 = t86 * acceleration[0] - t66 * acceleration[1] + 0.24 * t265;
-        let rate_dot_1_leg3 = t68 * (t278 + t258 * t267);
-        let t284 = 4.166666666666667 * (t67 * t258)
-            + 2.0833333333333335 * (t266 * rate_dot_1_leg3);
-        let t290 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
-        let t291 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t284
-            - parameters[27] * t278 + t290;
-        let t314 = 4.166666666666667 * t67
-            * (parameters[28] * t278
-                - (parameters[26] * t265 + parameters[27] * rate_dot_2_leg3))
-            + t267
-                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t265
-                    + parameters[28] * t284);
-        let t316 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
+        let t260 = rate_2_leg3 * rate_2_leg3;
+        let t262 = 2.0833333333333335 * (t52 - 0.1152);
+        let rate_dot_2_leg3 = t67
+            * (t242 * acceleration[1] - t247 * acceleration[0] - 0.24 * t253
+                - t260 * t262);
+        let t267 = 4.166666666666667 * t66;
+        let t273 = t85 * acceleration[0] - t65 * acceleration[1] + 0.24 * t260;
+        let rate_dot_1_leg3 = t67 * (t273 + t253 * t262);
+        let t278 = t253 * t267 + t262 * rate_dot_1_leg3;
+        let t284 = ::overact::math::signed(parameters[29], rate_2_leg3 - rate_1_leg3);
+        let t285 = parameters[25] * rate_dot_2_leg3 + parameters[26] * t278
+            - parameters[27] * t273 + t284;
+        let t307 = t267
+            * (parameters[28] * t273
+                - (parameters[26] * t260 + parameters[27] * rate_dot_2_leg3))
+            + t262
+                * (parameters[26] * rate_dot_2_leg3 - parameters[27] * t260
+                    + parameters[28] * t278);
+        let t309 = parameters[20] * rate_dot_1_leg3 + parameters[21] * rate_dot_1_leg3
             + parameters[22] * rate_1_leg3
             + ::overact::math::signed(parameters[23], rate_1_leg3) + parameters[24]
-            + t314 - t290;
-        let t319 = g1_vy_leg1 * t160 - minus_g2_vy_leg1 * t167 + g2_vy_leg2 * t216
-            - minus_g1_vy_leg2 * t241 + g2_vy_leg3 * t291 - minus_g1_vy_leg3 * t316;
-        let t332 = g1_vx_leg2 * t241 - minus_g2_vx_leg2 * t216
-            - (minus_g1_vx_leg1 * t160 + minus_g2_vx_leg1 * t167) + g1_vx_leg3 * t316
-            - minus_g2_vx_leg3 * t291;
-        let t334 = t332 + acceleration[0] * parameters[30];
-        let t337 = t99 * (t319 + acceleration[1] * parameters[30] + t334 * t96);
-        let t341 = t334 * t95 + t96 * t337;
-        let t346 = t99 * (g1_vx_leg3 * t96 - minus_g1_vy_leg3);
-        let t350 = g1_vx_leg3 * t95 + t96 * t346;
-        let t356 = 1.0 - (g1_vx_leg3 * t350 - minus_g1_vy_leg3 * t346);
-        let t358 = 1.0 / ::overact::math::sqrt(t356);
+            + t307 - t284;
+        let t312 = g1_vy_leg1 * t157 - minus_g2_vy_leg1 * t164 + g2_vy_leg2 * t212
+            - minus_g1_vy_leg2 * t236 + g2_vy_leg3 * t285 - minus_g1_vy_leg3 * t309;
+        let t325 = g1_vx_leg2 * t236 - minus_g2_vx_leg2 * t212
+            - (minus_g1_vx_leg1 * t157 + minus_g2_vx_leg1 * t164) + g1_vx_leg3 * t309
+            - minus_g2_vx_leg3 * t285;
+        let t327 = t325 + acceleration[0] * parameters[30];
+        let t330 = t98 * (t312 + acceleration[1] * parameters[30] + t327 * t95);
+        let t334 = t327 * t94 + t95 * t330;
+        let t339 = t98 * (g1_vx_leg3 * t95 - minus_g1_vy_leg3);
+        let t343 = g1_vx_leg3 * t94 + t95 * t339;
+        let t349 = 1.0 - (g1_vx_leg3 * t343 - minus_g1_vy_leg3 * t339);
+        let t351 = 1.0 / ::overact::math::sqrt(t349);
         Ok([
-            g1_vy_leg1 * t337 - minus_g1_vx_leg1 * t341
-                - preload[0] * ((g1_vy_leg1 * t346 - minus_g1_vx_leg1 * t350) * t358),
-            g1_vx_leg2 * t341 - minus_g1_vy_leg2 * t337
-                - preload[0] * ((g1_vx_leg2 * t350 - minus_g1_vy_leg2 * t346) * t358),
-            g1_vx_leg3 * t341 - minus_g1_vy_leg3 * t337 + preload[0] * (t356 * t358),
+            g1_vy_leg1 * t330 - minus_g1_vx_leg1 * t334
+                - preload[0] * ((g1_vy_leg1 * t339 - minus_g1_vx_leg1 * t343) * t351),
+            g1_vx_leg2 * t334 - minus_g1_vy_leg2 * t330
+                - preload[0] * ((g1_vx_leg2 * t343 - minus_g1_vy_leg2 * t339) * t351),
+            g1_vx_leg3 * t334 - minus_g1_vy_leg3 * t330 + preload[0] * (t349 * t351),
         ])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
@@ -4091,7 +4034,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3.
     ///
-    /// 121 operations (46 additions, 67 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 121 intermediates.
+    /// 114 operations (40 additions, 66 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 0 signs, 114 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4104,63 +4047,61 @@ impl ThreeLegPoint {
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let g1_vy_leg1 = (t0 - (0.5 * t0 - pose[0] * t7)) * t12;
-        let t15 = pose[0] + 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t18 = 0.8660254037844386 * t17;
-        let t19 = 0.5 * t15 - t18;
-        let t22 = 0.5 * t17;
-        let t23 = 0.8660254037844386 * t15 + t22;
-        let t26 = t23 * t23 + t19 * t19;
-        let t28 = 0.0576 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t32 = t19 - (0.5 * t19 + t23 * t29);
-        let t37 = t23 + t19 * t29 - 0.5 * t23;
-        let t40 = t26 * t29;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t32 - 2.0833333333333335 * t37)
-            * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t22;
-        let t50 = 0.5 * t45 + t18;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t59 = t47 - (0.5 * t47 + t50 * t56);
-        let t64 = t50 - (0.5 * t50 - t47 * t56);
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t59 - 3.608439182435161 * t64)
-            * t68;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t0 * t7 - pose[0]) * t12;
-        let g1_vx_leg2 = (3.608439182435161 * t37 + 2.0833333333333335 * t32) * t41;
-        let g1_vx_leg3 = (3.608439182435161 * t59 + 2.0833333333333335 * t64) * t68;
-        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t94 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = t89 * t95;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t108 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
+        let t10 = t4 * t7;
+        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
+        let t11 = 1.0 / t10;
+        let g1_vy_leg1 = (0.5 * t0 + pose[0] * t7) * t11;
+        let t14 = pose[0] - 0.3031088913245535;
+        let t16 = pose[1] + 0.175;
+        let t18 = 0.5 * t14 + 0.8660254037844386 * t16;
+        let t19 = pose[0] - t18;
+        let t23 = 0.5 * t16;
+        let t24 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t23;
+        let t27 = t24 * t24 + t19 * t19;
+        let t29 = 0.0576 / t27 - 0.25;
+        ::overact::guard::reach(t29, "leg2")?;
+        let t30 = ::overact::math::sqrt(t29);
+        let t32 = 0.5 * t19 - t24 * t30;
+        let t36 = t19 * t30 + 0.5 * t24;
+        let t39 = t27 * t30;
+        ::overact::guard::leg(t39, 0.05748423696979895, "leg2")?;
+        let t40 = 0.24 / t39;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t32 - 2.0833333333333335 * t36)
+            * t40;
+        let t45 = 0.8660254037844386 * t14 - t23;
+        let t49 = t45 * t45 + t18 * t18;
+        let t51 = 0.0576 / t49 - 0.25;
+        ::overact::guard::reach(t51, "leg3")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t54 = 0.5 * t45 - t18 * t52;
+        let t58 = 0.5 * t18 + t45 * t52;
+        let t61 = t49 * t52;
+        ::overact::guard::leg(t61, 0.05748423696979895, "leg3")?;
+        let t62 = 0.24 / t61;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
+            * t62;
+        let g1_vx_leg2 = (3.608439182435161 * t36 + 2.0833333333333335 * t32) * t40;
+        let minus_g1_vx_leg1 = (t0 * t7 - 0.5 * pose[0]) * t11;
+        let g1_vx_leg3 = (3.608439182435161 * t54 + 2.0833333333333335 * t58) * t62;
+        let t82 = g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
             + g1_vx_leg3 * torques[2];
-        let t111 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
-            - minus_g1_vy_leg3 * torques[2] + t108 * t96) / t98;
-        let t115 = t108 * t95 + t96 * t111;
+        let t87 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t92 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t92, 26.146658848896372, "actuators")?;
+        let t93 = 1.0 / t92;
+        let t94 = t87 * t93;
+        let t103 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t87 * t94;
+        ::overact::guard::platform(t103, 26.146658848896372, "actuators")?;
+        let t104 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
+            - minus_g1_vy_leg3 * torques[2] + t82 * t94) / t103;
+        let t108 = t82 * t93 + t94 * t104;
         Ok([
-            g1_vy_leg1 * t111 - minus_g1_vx_leg1 * t115,
-            g1_vx_leg2 * t115 - minus_g1_vy_leg2 * t111,
-            g1_vx_leg3 * t115 - minus_g1_vy_leg3 * t111,
+            g1_vy_leg1 * t104 - minus_g1_vx_leg1 * t108,
+            g1_vx_leg2 * t108 - minus_g1_vy_leg2 * t104,
+            g1_vx_leg3 * t108 - minus_g1_vy_leg3 * t104,
         ])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
@@ -4170,7 +4111,7 @@ impl ThreeLegPoint {
     ///
     /// Output: 3 x 1.
     ///
-    /// 116 operations (43 additions, 64 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 117 intermediates.
+    /// 109 operations (37 additions, 63 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 0 signs, 110 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4180,61 +4121,59 @@ impl ThreeLegPoint {
         let t6 = 0.0576 / t4 - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
         let t7 = ::overact::math::sqrt(t6);
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let g1_vy_leg1 = (t0 - (0.5 * t0 - pose[0] * t7)) * t12;
-        let t15 = pose[0] + 0.3031088913245535;
-        let t17 = pose[1] + 0.175;
-        let t18 = 0.8660254037844386 * t17;
-        let t19 = 0.5 * t15 - t18;
-        let t22 = 0.5 * t17;
-        let t23 = 0.8660254037844386 * t15 + t22;
-        let t26 = t23 * t23 + t19 * t19;
-        let t28 = 0.0576 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t32 = t19 - (0.5 * t19 + t23 * t29);
-        let t37 = t23 + t19 * t29 - 0.5 * t23;
-        let t40 = t26 * t29;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let minus_g1_vy_leg2 = (3.608439182435161 * t32 - 2.0833333333333335 * t37)
-            * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t22;
-        let t50 = 0.5 * t45 + t18;
-        let t53 = t47 * t47 + t50 * t50;
-        let t55 = 0.0576 / t53 - 0.25;
-        ::overact::guard::reach(t55, "leg3")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t59 = t47 - (0.5 * t47 + t50 * t56);
-        let t64 = t50 - (0.5 * t50 - t47 * t56);
-        let t67 = t53 * t56;
-        ::overact::guard::leg(t67, 0.05748423696979895, "leg3")?;
-        let t68 = 0.24 / t67;
-        let minus_g1_vy_leg3 = (2.0833333333333335 * t59 - 3.608439182435161 * t64)
-            * t68;
-        let minus_g1_vx_leg1 = (0.5 * pose[0] + t0 * t7 - pose[0]) * t12;
-        let g1_vx_leg2 = (3.608439182435161 * t37 + 2.0833333333333335 * t32) * t41;
-        let g1_vx_leg3 = (3.608439182435161 * t59 + 2.0833333333333335 * t64) * t68;
-        let t89 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t10 = t4 * t7;
+        ::overact::guard::leg(t10, 0.05748423696979895, "leg1")?;
+        let t11 = 1.0 / t10;
+        let g1_vy_leg1 = (0.5 * t0 + pose[0] * t7) * t11;
+        let t13 = pose[0] - 0.3031088913245535;
+        let t15 = pose[1] + 0.175;
+        let t16 = 0.5 * t15;
+        let t17 = 0.8660254037844386 * t13 - t16;
+        let t21 = 0.5 * t13 + 0.8660254037844386 * t15;
+        let t24 = t17 * t17 + t21 * t21;
+        let t26 = 0.0576 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg3")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t29 = 0.5 * t17 - t21 * t27;
+        let t33 = 0.5 * t21 + t17 * t27;
+        let t36 = t24 * t27;
+        ::overact::guard::leg(t36, 0.05748423696979895, "leg3")?;
+        let t37 = 0.24 / t36;
+        let g1_vx_leg3 = (3.608439182435161 * t29 + 2.0833333333333335 * t33) * t37;
+        let minus_g1_vx_leg1 = (t0 * t7 - 0.5 * pose[0]) * t11;
+        let t44 = pose[0] - t21;
+        let t47 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t16;
+        let t50 = t47 * t47 + t44 * t44;
+        let t52 = 0.0576 / t50 - 0.25;
+        ::overact::guard::reach(t52, "leg2")?;
+        let t53 = ::overact::math::sqrt(t52);
+        let t56 = t44 * t53 + 0.5 * t47;
+        let t60 = 0.5 * t44 - t47 * t53;
+        let t63 = t50 * t53;
+        ::overact::guard::leg(t63, 0.05748423696979895, "leg2")?;
+        let t64 = 0.24 / t63;
+        let g1_vx_leg2 = (3.608439182435161 * t56 + 2.0833333333333335 * t60) * t64;
+        let minus_g1_vy_leg2 = (3.608439182435161 * t60 - 2.0833333333333335 * t56)
+            * t64;
+        let minus_g1_vy_leg3 = (2.0833333333333335 * t29 - 3.608439182435161 * t33)
+            * t37;
+        let t77 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t94 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t82 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t94, 26.146658848896372, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = t89 * t95;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t89 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t101 = (g1_vx_leg3 * t96 - minus_g1_vy_leg3) / t98;
-        let t105 = g1_vx_leg3 * t95 + t96 * t101;
-        let t111 = 1.0 - (g1_vx_leg3 * t105 - minus_g1_vy_leg3 * t101);
-        let t113 = 1.0 / ::overact::math::sqrt(t111);
+        ::overact::guard::platform(t82, 26.146658848896372, "actuators")?;
+        let t83 = 1.0 / t82;
+        let t84 = t77 * t83;
+        let t93 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t77 * t84;
+        ::overact::guard::platform(t93, 26.146658848896372, "actuators")?;
+        let t94 = (g1_vx_leg3 * t84 - minus_g1_vy_leg3) / t93;
+        let t98 = g1_vx_leg3 * t83 + t84 * t94;
+        let t104 = 1.0 - (g1_vx_leg3 * t98 - minus_g1_vy_leg3 * t94);
+        let t106 = 1.0 / ::overact::math::sqrt(t104);
         Ok([
-            [-((g1_vy_leg1 * t101 - minus_g1_vx_leg1 * t105) * t113)],
-            [-((g1_vx_leg2 * t105 - minus_g1_vy_leg2 * t101) * t113)], [t111 * t113],
+            [-((g1_vy_leg1 * t94 - minus_g1_vx_leg1 * t98) * t106)],
+            [-((g1_vx_leg2 * t98 - minus_g1_vy_leg2 * t94) * t106)], [t104 * t106],
         ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. Where the iteration fails from there, it starts again from `pose_in_closed_form`.
