@@ -130,6 +130,19 @@ pub(crate) fn robot(name: &str) -> String {
     path.display().to_string()
 }
 
+/// The names of the library's robots, sorted.
+pub(crate) fn robots() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    let entries = fs::read_dir(folder).expect("the robots");
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+        .filter_map(|name| Some(name.strip_suffix(".toml")?.to_owned()))
+        .collect();
+    names.sort();
+    assert!(!names.is_empty());
+    names
+}
+
 /// A file of the measured data, which are not part of this repository: they lie next to it, or where
 /// `OVERACT_SHARED` says.
 pub(crate) fn shared(name: &str) -> Option<String> {
@@ -141,6 +154,21 @@ pub(crate) fn shared(name: &str) -> Option<String> {
     }
     eprintln!("skipped: {name} is not there; set OVERACT_SHARED to the folder of the data");
     None
+}
+
+/// A list of a document.
+pub(crate) fn list(value: &Value) -> &[Value] {
+    value
+        .as_array()
+        .unwrap_or_else(|| panic!("{value} is no list"))
+}
+
+/// The names in a list of a document.
+pub(crate) fn names(value: &Value) -> Vec<&str> {
+    fn name(item: &Value) -> &str {
+        item.as_str().unwrap_or_else(|| panic!("{item} is no text"))
+    }
+    list(value).iter().map(name).collect()
 }
 
 /// A number of a document.
