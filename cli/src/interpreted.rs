@@ -17,6 +17,7 @@ use overact_codegen::{
     derivation::{Columns, Family, From},
     evaluation::{Failed, Rows, Workspace},
     lowering::{Condition, Program},
+    mechanism::Mechanism,
 };
 use std::sync::{Mutex, PoisonError};
 
@@ -90,6 +91,21 @@ impl InterpretedRobot {
             .filter_map(|&(f, family)| robot.serve(f, family))
             .collect();
         robot
+    }
+
+    /// Whether a function of a model is served, or serves to find pose and joints. A model needs no
+    /// others to be interpreted.
+    #[must_use]
+    pub fn serves(mechanism: &Mechanism, family: Family, from: From) -> bool {
+        let plain = match mechanism.platform {
+            Some(_) => From::Pose,
+            None => From::Joints,
+        };
+        match family {
+            Family::PoseInClosedForm => true,
+            Family::ClosureError | Family::LegsJacobian => from == From::Joints,
+            _ => from == plain && ALL.iter().any(|(_, served)| *served == family),
+        }
     }
 
     /// The model.

@@ -1,8 +1,12 @@
 //! A description from a file, read and compiled.
 
-use crate::failure::{Failure, Problem};
+use crate::{
+    InterpretedRobot,
+    failure::{Failure, Problem},
+};
 use overact_codegen::{
-    Effort, RobotModel, compile_with,
+    Effort, RobotModel,
+    compile::{Wanted, compile_some},
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
@@ -24,7 +28,23 @@ pub struct Robot {
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load(path: &Path) -> Result<Robot, Failure> {
-    load_with(path, &|described| described.unwrap_or_default())
+    load_some(path, &|_, _, _| true)
+}
+
+/// [`load`] with the functions only that an [`InterpretedRobot`] serves.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load_to_serve(path: &Path) -> Result<Robot, Failure> {
+    load_some(path, &InterpretedRobot::serves)
+}
+
+/// [`load`] with the wanted functions only.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn load_some(path: &Path, wanted: Wanted<'_>) -> Result<Robot, Failure> {
+    loaded(path, &Option::unwrap_or_default, wanted)
 }
 
 /// [`load`] with the effort that follows from the description's.
@@ -32,8 +52,16 @@ pub fn load(path: &Path) -> Result<Robot, Failure> {
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load_with(path: &Path, effort: &dyn Fn(Option<Effort>) -> Effort) -> Result<Robot, Failure> {
+    loaded(path, effort, &|_, _, _| true)
+}
+
+fn loaded(
+    path: &Path,
+    effort: &dyn Fn(Option<Effort>) -> Effort,
+    wanted: Wanted<'_>,
+) -> Result<Robot, Failure> {
     let source = read(path)?;
-    match compiled(&source, effort) {
+    match compiled(&source, effort, wanted) {
         Ok((description, model)) => Ok(Robot {
             file: source.name,
             description,
@@ -49,9 +77,10 @@ pub fn load_with(path: &Path, effort: &dyn Fn(Option<Effort>) -> Effort) -> Resu
 fn compiled(
     source: &Source,
     effort: &dyn Fn(Option<Effort>) -> Effort,
+    wanted: Wanted<'_>,
 ) -> Result<(Description, RobotModel), Diagnostics> {
     let description = description::parse(source)?;
-    let model = compile_with(source, Some(effort(description.effort)))?;
+    let model = compile_some(source, Some(effort(description.effort)), wanted)?;
     Ok((description, model))
 }
 

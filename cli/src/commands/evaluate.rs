@@ -6,16 +6,18 @@ mod resolve;
 use crate::{
     InterpretedRobot,
     failure::{Failure, Problem},
-    load::{Robot, load},
+    load::{Robot, load_some},
     output,
     states::States,
 };
 use clap::ValueEnum;
 use overact_codegen::{
-    Effort, RobotModel, compile,
+    Effort, RobotModel,
+    compile::{Wanted, model_some},
     derivation::{Columns, Family, From},
     evaluation::{Rows, Workspace},
     lowering::Program,
+    mechanism::Mechanism,
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
@@ -100,10 +102,15 @@ struct Document {
 /// A function that the robot does not have, states that do not hold what it needs, or a state at
 /// which it has no value.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let Robot { mut model, .. } = load(&arguments.file)?;
+    let name = arguments.function.as_str();
+    let wanted = |mechanism: &Mechanism, family: Family, from: From| {
+        let full = || family.function_name(from, mechanism.platform.is_none());
+        InterpretedRobot::serves(mechanism, family, from) || family.name() == name || full() == name
+    };
+    let Robot { mut model, .. } = load_some(&arguments.file, &wanted)?;
     let states = States::read(&arguments.states)?;
     if let Some(names) = &arguments.kept {
-        model = with_kept(model, names)?;
+        model = with_kept(model, names, &wanted)?;
     }
     let function = resolve::function(&model, arguments, &states)?;
     let (family, from, name) = (function.family, function.from, function.name.clone());
@@ -129,11 +136,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 }
 
 /// The model with other kept actuators than the description's.
-fn with_kept(model: RobotModel, names: &[String]) -> Result<RobotModel, Failure> {
+fn with_kept(
+    model: RobotModel,
+    names: &[String],
+    wanted: Wanted<'_>,
+) -> Result<RobotModel, Failure> {
     let kept = super::kept_actuators(&model, names)?;
     let mut mechanism = model.mechanism;
     mechanism.kept_actuators = kept;
-    compile::model(mechanism, Effort::Quick).map_err(|_| {
+    model_some(mechanism, Effort::Quick, wanted).map_err(|_| {
         let message = "these kept actuators never determine the platform's motion";
         let help = "choose other ones; `overact inspect` lists how well each choice does";
         Problem::new(message).help(help).into()

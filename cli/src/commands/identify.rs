@@ -5,7 +5,8 @@
 
 use super::runs;
 use crate::{
-    InterpretedRobot, failure::Failure, load::load, output, progress::Progress, report as files,
+    InterpretedRobot, failure::Failure, load::load_to_serve, output, progress::Progress,
+    report as files,
 };
 use overact::Model;
 use overact_identification::{Experiment, Identification, identify, report};
@@ -35,7 +36,7 @@ pub(crate) struct Arguments {
 /// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check_folder(arguments.output.as_deref())?;
-    let robot = load(&arguments.file)?;
+    let robot = load_to_serve(&arguments.file)?;
     let reports = arguments
         .reports
         .check(&robot, arguments.output.as_deref())?;

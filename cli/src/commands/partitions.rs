@@ -8,7 +8,7 @@ use super::{choices, runs};
 use crate::{
     InterpretedRobot,
     failure::{Failure, Problem},
-    load::load,
+    load::load_to_serve,
     output,
     progress::Progress,
 };
@@ -66,7 +66,7 @@ struct Row {
 /// A robot without redundancy, or as `overact identify`.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check_folder(arguments.output.as_deref())?;
-    let robot = load(&arguments.file)?;
+    let robot = load_to_serve(&arguments.file)?;
     let served = InterpretedRobot::new(robot.model.clone());
     let info = served.info();
     if info.sizes.actuators == info.sizes.dof {

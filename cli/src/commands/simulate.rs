@@ -4,7 +4,7 @@ use crate::{
     InterpretedRobot,
     experiment::{experiment, failure},
     failure::{Failure, Problem},
-    load::{Robot, load},
+    load::{Robot, load_to_serve},
     output::{self, json, print, table},
     progress::Progress,
 };
@@ -54,7 +54,7 @@ struct Summary {
 /// # Errors
 /// A description without an experiment, or a run that can't be made.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let robot = load(&arguments.file)?;
+    let robot = load_to_serve(&arguments.file)?;
     let served = InterpretedRobot::new(robot.model.clone());
     let (mut virtual_experiment, without_effect) = experiment(&robot, &served.info())?;
     keep_runs(&robot, &mut virtual_experiment, &arguments.runs)?;

@@ -7,7 +7,7 @@ use crate::{
 };
 use overact_codegen::{
     RobotModel,
-    derivation::{Columns, From},
+    derivation::{Columns, Family, From},
     diagnostic::did_you_mean,
     model::Function,
 };
@@ -71,10 +71,16 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m Function, F
     if let Some(function) = model.functions.iter().find(|f| f.name == name) {
         return Ok(function);
     }
-    let mut names: Vec<&str> = model.functions.iter().map(|f| f.family.name()).collect();
+    // The model has the wanted functions only; all that there are may be meant.
+    let all = Family::all(&model.mechanism, model.joints);
+    let mut names: Vec<&str> = all.iter().map(|(family, _)| family.name()).collect();
     names.dedup();
-    let full = model.functions.iter().map(|f| f.name.as_str());
-    let help = did_you_mean(name, names.iter().copied().chain(full));
+    let full = all
+        .iter()
+        .map(|(family, from)| family.function_name(*from, model.is_tree()));
+    let full: Vec<String> = full.collect();
+    let known = names.iter().copied().chain(full.iter().map(String::as_str));
+    let help = did_you_mean(name, known);
     names.sort_unstable();
     names.dedup();
     let help = help.unwrap_or_else(|| format!("the functions are {}", names.join(", ")));
