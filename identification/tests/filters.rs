@@ -2,7 +2,7 @@
 
 mod common;
 
-use overact_identification::filters::{butterworth, chebyshev1, decimate, filtfilt};
+use overact_identification::filters::{ZeroPhase, butterworth, chebyshev1, decimate, filtfilt};
 use serde_json::Value;
 
 /// A list of numbers of the reference.
@@ -159,4 +159,63 @@ fn impossible_filters_are_errors() {
     );
     assert!(decimate(&[1.0; 30], 0).is_err());
     assert_eq!(decimate(&[1.0, 2.0], 1).expect("unfiltered"), [1.0, 2.0]);
+}
+
+/// A signal with slow and fast parts and a jump.
+fn signal(samples: usize, shift: f64) -> Vec<f64> {
+    let mut noise = 0x2545_f491_u64;
+    (0..samples)
+        .map(|k| {
+            noise = noise
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let white = (noise >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            let t = k as f64 * 1e-3 + shift;
+            (2.0 * t).sin()
+                + 0.3 * (40.0 * t).cos()
+                + white
+                + if k > samples / 3 { 2.0 } else { 0.0 }
+        })
+        .collect()
+}
+
+#[test]
+fn blocks_give_what_the_whole_signal_gives() {
+    const SAMPLES: usize = 61_234;
+    let signals = [signal(SAMPLES, 0.0), signal(SAMPLES, 5.0)];
+    let rows: Vec<f64> = (0..SAMPLES)
+        .flat_map(|k| signals.iter().map(move |signal| signal[k]))
+        .collect();
+    let filters = [
+        ("Butterworth", butterworth(4, 0.04), 1),
+        ("odd order", butterworth(5, 0.1), 1),
+        ("Chebyshev", chebyshev1(8, 0.05, 0.8 / 20.0), 20),
+    ];
+    for (name, filter, step) in filters {
+        let filter = filter.expect("a design");
+        let first = (SAMPLES - 1) % step;
+        let whole: Vec<Vec<f64>> = signals
+            .iter()
+            .map(|signal| {
+                let filtered = filtfilt(&filter, signal).expect("long enough");
+                filtered.into_iter().skip(first).step_by(step).collect()
+            })
+            .collect();
+        // Blocks of all sizes, from single samples on.
+        for block in [1, 7, 5_000, SAMPLES] {
+            let mut stream =
+                ZeroPhase::new(&filter, 2, SAMPLES, (first, step)).expect("long enough");
+            let mut found = Vec::new();
+            let mut early = 0;
+            for rows in rows.chunks(2 * block) {
+                early = found.len();
+                stream.push(rows, &mut found);
+            }
+            assert!(block == SAMPLES || early > 0, "{name}: all came at the end");
+            for (index, whole) in whole.iter().enumerate() {
+                let column: Vec<f64> = found.iter().skip(index).step_by(2).copied().collect();
+                close(&column, whole, 1e-12, name);
+            }
+        }
+    }
 }

@@ -6,7 +6,7 @@
 
 use super::{
     design::{LowPass, chebyshev1},
-    zero_phase::filtfilt,
+    zero_phase::{ZeroPhase, filtfilt},
 };
 use crate::error::{Error, Problem};
 
@@ -59,6 +59,25 @@ impl Decimator {
     #[must_use]
     pub const fn first(&self, samples: usize) -> usize {
         samples.saturating_sub(1) % self.factor
+    }
+
+    /// Number of samples that are kept of `samples`.
+    #[must_use]
+    pub const fn kept(&self, samples: usize) -> usize {
+        samples.div_ceil(self.factor)
+    }
+
+    /// The decimation of `samples` rows of `width` values that come block by block; none where every
+    /// sample is kept as it is.
+    ///
+    /// # Errors
+    /// No more than 24 samples.
+    pub fn stream(&self, width: usize, samples: usize) -> Result<Option<ZeroPhase>, Error> {
+        let keep = (self.first(samples), self.factor);
+        self.filter
+            .as_ref()
+            .map(|filter| ZeroPhase::new(filter, width, samples, keep))
+            .transpose()
     }
 
     /// Low-passes `signal` and keeps one sample in n_d.
