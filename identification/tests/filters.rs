@@ -2,7 +2,9 @@
 
 mod common;
 
-use overact_identification::filters::{ZeroPhase, butterworth, chebyshev1, decimate, filtfilt};
+use overact_identification::filters::{
+    Decimator, ZeroPhase, butterworth, chebyshev1, decimate, filtfilt,
+};
 use serde_json::Value;
 
 /// A list of numbers of the reference.
@@ -179,6 +181,20 @@ fn signal(samples: usize, shift: f64) -> Vec<f64> {
         .collect()
 }
 
+/// Pushes rows in blocks; the length of what had come before the last block.
+fn pushed(
+    rows: &[f64],
+    block: usize,
+    mut push: impl FnMut(&[f64], &mut Vec<f64>),
+) -> (Vec<f64>, usize) {
+    let (mut found, mut early) = (Vec::new(), 0);
+    for rows in rows.chunks(block) {
+        early = found.len();
+        push(rows, &mut found);
+    }
+    (found, early)
+}
+
 #[test]
 fn blocks_give_what_the_whole_signal_gives() {
     const SAMPLES: usize = 61_234;
@@ -186,36 +202,70 @@ fn blocks_give_what_the_whole_signal_gives() {
     let rows: Vec<f64> = (0..SAMPLES)
         .flat_map(|k| signals.iter().map(move |signal| signal[k]))
         .collect();
-    let filters = [
-        ("Butterworth", butterworth(4, 0.04), 1),
-        ("odd order", butterworth(5, 0.1), 1),
-        ("Chebyshev", chebyshev1(8, 0.05, 0.8 / 20.0), 20),
-    ];
-    for (name, filter, step) in filters {
+    let column =
+        |rows: &[f64], index| -> Vec<f64> { rows.iter().skip(index).step_by(2).copied().collect() };
+    for (name, filter) in [
+        ("even order", butterworth(4, 0.04)),
+        ("odd order", butterworth(5, 0.1)),
+    ] {
         let filter = filter.expect("a design");
-        let first = (SAMPLES - 1) % step;
-        let whole: Vec<Vec<f64>> = signals
-            .iter()
-            .map(|signal| {
-                let filtered = filtfilt(&filter, signal).expect("long enough");
-                filtered.into_iter().skip(first).step_by(step).collect()
-            })
-            .collect();
+        let whole = signals
+            .each_ref()
+            .map(|signal| filtfilt(&filter, signal).expect("long enough"));
         // Blocks of all sizes, from single samples on.
         for block in [1, 7, 5_000, SAMPLES] {
-            let mut stream =
-                ZeroPhase::new(&filter, 2, SAMPLES, (first, step)).expect("long enough");
-            let mut found = Vec::new();
-            let mut early = 0;
-            for rows in rows.chunks(2 * block) {
-                early = found.len();
-                stream.push(rows, &mut found);
-            }
+            let mut stream = ZeroPhase::new(&filter, 2, SAMPLES).expect("long enough");
+            let (found, early) = pushed(&rows, 2 * block, |rows, found| stream.push(rows, found));
             assert!(block == SAMPLES || early > 0, "{name}: all came at the end");
             for (index, whole) in whole.iter().enumerate() {
-                let column: Vec<f64> = found.iter().skip(index).step_by(2).copied().collect();
-                close(&column, whole, 1e-12, name);
+                close(&column(&found, index), whole, 1e-12, name);
             }
         }
+    }
+    for factor in [1, 2, 5, 20, 50] {
+        let decimator = Decimator::new(factor).expect("a factor");
+        // Sample by sample, with the same sections.
+        let first = (SAMPLES - 1) % factor;
+        let whole = signals.each_ref().map(|signal| {
+            if factor == 1 {
+                return signal.clone();
+            }
+            let filter = chebyshev1(8, 0.05, 0.8 / factor as f64).expect("a design");
+            let filtered = filtfilt(&filter, signal).expect("long enough");
+            filtered.into_iter().skip(first).step_by(factor).collect()
+        });
+        for block in [1, 7, 5_000, SAMPLES] {
+            let mut stream = decimator.stream(2, SAMPLES).expect("long enough");
+            let (found, early) = pushed(&rows, 2 * block, |rows, found| stream.push(rows, found));
+            assert!(
+                block == SAMPLES || factor == 50 || early > 0,
+                "{factor}: all came at the end"
+            );
+            for (index, whole) in whole.iter().enumerate() {
+                close(
+                    &column(&found, index),
+                    whole,
+                    1e-11,
+                    &format!("decimation by {factor}"),
+                );
+            }
+        }
+    }
+    // As short as can be.
+    for samples in 25..40 {
+        let signal = signal(samples, 1.0);
+        let filter = chebyshev1(8, 0.05, 0.8 / 10.0).expect("a design");
+        let whole: Vec<f64> = filtfilt(&filter, &signal).expect("long enough");
+        let kept: Vec<f64> = whole
+            .into_iter()
+            .skip((samples - 1) % 10)
+            .step_by(10)
+            .collect();
+        close(
+            &decimate(&signal, 10).expect("long enough"),
+            &kept,
+            1e-11,
+            "short",
+        );
     }
 }

@@ -34,6 +34,21 @@ impl Cascade {
         }
     }
 
+    /// A filter in given states: for each section, s1 of all `width` signals, then s2 of all.
+    pub(super) fn with_states(filter: &LowPass, width: usize, states: Vec<f64>) -> Self {
+        debug_assert_eq!(states.len(), 2 * filter.sections().len() * width);
+        Self {
+            sections: filter.sections().to_vec(),
+            states,
+            width,
+        }
+    }
+
+    /// The states as they are now.
+    pub(super) fn into_states(self) -> Vec<f64> {
+        self.states
+    }
+
     /// Filters rows in place, the first one first.
     pub(super) fn pass(&mut self, rows: &mut [f64]) {
         for row in rows.chunks_exact_mut(self.width) {
@@ -52,6 +67,14 @@ impl Cascade {
                     *x = y;
                 }
             }
+        }
+    }
+
+    /// Filters rows in place, the last one first.
+    pub(super) fn pass_backwards(&mut self, rows: &mut [f64]) {
+        let width = self.width;
+        for row in rows.rchunks_exact_mut(width) {
+            self.pass(row);
         }
     }
 
@@ -80,6 +103,35 @@ pub(crate) fn settling(filter: &LowPass, tolerance: f64) -> usize {
     last
 }
 
+/// The odd reflection of rows about the first of them, nearest first: `count` rows.
+pub(super) fn reflected<'a>(mut rows: impl Iterator<Item = &'a [f64]>, count: usize) -> Vec<f64> {
+    let Some(first) = rows.next() else {
+        return Vec::new();
+    };
+    rows.take(count)
+        .flat_map(|row| first.iter().zip(row).map(|(first, x)| 2.0 * first - x))
+        .collect()
+}
+
+/// A filter that has passed forwards over the reflection before the first of `rows`, whose number is
+/// more than its padding.
+pub(super) fn started(filter: &LowPass, width: usize, rows: &[f64]) -> Cascade {
+    let reflection = reflected(rows.chunks_exact(width), filter.padding());
+    // The farthest row comes first.
+    let mut farthest_first = reflection.rchunks_exact(width).map(<[f64]>::to_vec);
+    let mut row = farthest_first
+        .next()
+        .unwrap_or_else(|| rows[..width].to_vec());
+    let mut cascade = Cascade::settled(filter, &row);
+    if !reflection.is_empty() {
+        cascade.pass(&mut row);
+    }
+    for mut row in farthest_first {
+        cascade.pass(&mut row);
+    }
+    cascade
+}
+
 /// The state of a section whose input has been 1 for ever, and its gain at rest.
 fn steady_state(section: &Section) -> ([f64; 2], f64) {
     let Section { b, a } = section;
@@ -96,7 +148,6 @@ mod tests {
 
     #[test]
     fn settling_follows_the_slowest_pole() {
-        // Slowest pole pair of order 4 at 0.04: |z| from its decay -sin(π/8) tan(π 0.04/2).
         let filter = butterworth(4, 0.04).expect("a design");
         let radius = filter
             .sections()

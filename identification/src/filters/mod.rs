@@ -6,7 +6,7 @@
 //! [`filtfilt`] runs it forwards and backwards, so that no phase is lost between positions,
 //! torques and the columns of the regressor, and the parallel decimation of section 4.1 of the
 //! paper introduces no error into the linear relation (40). Long signals pass block by block
-//! ([`ZeroPhase`]), so memory does not grow with them.
+//! ([`ZeroPhase`], [`Decimation`]), so memory does not grow with them.
 
 mod cascade;
 mod decimation;
@@ -14,7 +14,7 @@ mod design;
 mod differences;
 mod zero_phase;
 
-pub use decimation::{DECIMATION_ORDER, DECIMATION_PADDING, Decimator, decimate};
+pub use decimation::{DECIMATION_ORDER, DECIMATION_PADDING, Decimation, Decimator, decimate};
 pub use design::{LowPass, Section, butterworth, chebyshev1};
 pub use differences::central_differences;
 pub use zero_phase::{ZeroPhase, filtfilt};
