@@ -21,6 +21,7 @@
 pub mod base;
 mod blocks;
 pub mod columns;
+mod conditioning;
 pub mod data;
 mod elimination;
 mod error;
@@ -30,9 +31,11 @@ pub mod factor;
 pub mod filters;
 pub mod identify;
 pub mod kinematics;
+mod observation;
 pub mod regression;
 pub mod report;
 pub mod settings;
+mod sink;
 pub mod states;
 pub mod validation;
 
@@ -52,7 +55,7 @@ pub use identify::{
     identify,
     verdict::{Finding, FindingKind, Thresholds, TrackingError, Verdict},
 };
-pub use kinematics::{Motion, motion};
-pub use regression::{PartitionCondition, Projection, System, system};
+pub use kinematics::{Motion, Motions, motion};
+pub use regression::{Part, PartitionCondition, Projection, Stretch, System};
 pub use settings::{Normalisation, Settings};
-pub use validation::{Series, TorqueComparison, Validation, validate, validate_equations};
+pub use validation::{Series, TorqueComparison, Validation};

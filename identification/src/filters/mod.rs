@@ -16,5 +16,5 @@ mod zero_phase;
 
 pub use decimation::{DECIMATION_ORDER, DECIMATION_PADDING, Decimation, Decimator, decimate};
 pub use design::{LowPass, Section, butterworth, chebyshev1};
-pub use differences::central_differences;
+pub(crate) use differences::central_differences;
 pub use zero_phase::{ZeroPhase, filtfilt};

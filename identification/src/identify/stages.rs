@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use overact::Model;
-
 use super::{
-    Prepared, Progress,
+    Prepared,
     result::{Estimate, ParameterEstimate, Stage},
 };
 use crate::{
@@ -14,7 +12,7 @@ use crate::{
     essential::{Removal, essential},
     estimate::{DATA_RANK_TOLERANCE, Estimation, estimate},
     factor::Factor,
-    regression::{Projection, System, system},
+    regression::{Projection, System},
     settings::Settings,
 };
 
@@ -35,45 +33,29 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
-/// Estimates base and essential parameters of one projection from prepared runs.
+/// Estimates base and essential parameters of one of the prepared projections.
 ///
 /// # Errors
-/// As [`system`](crate::regression::system), or data that determine no parameter.
+/// A projection that is singular on a run, or data that determine no parameter.
 pub fn estimate_projection(
-    model: &dyn Model,
     prepared: &Prepared,
-    projection: &Projection,
+    projection: usize,
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
-    progress: &dyn Fn(Progress<'_>),
 ) -> Result<Outcome, Error> {
-    let label = projection.name();
-    let report = |run: usize| {
-        let run = prepared
-            .motions
-            .get(run)
-            .map_or("", |motion| motion.run.as_str());
-        progress(Progress::Equations { model: label, run });
-    };
-    let system = system(
-        model,
-        &prepared.columns,
-        projection,
-        &prepared.motions,
-        settings,
-        &report,
-    )?;
-    progress(Progress::Estimation { model: label });
+    let unknown = || Error::from(Problem::new("the projection was not prepared"));
+    let system = prepared.systems.get(projection).ok_or_else(unknown)?;
+    let system = system.as_ref().map_err(Clone::clone)?;
     let mut warnings = Vec::new();
-    let (selected, names) = on_data(prepared, &system, &mut warnings)?;
-    let base = estimate(&system, &selected, settings)?;
-    let rest = essential(&system, &selected, &names, &base, settings)?;
-    warnings.extend(quality_warnings(&system, &base, &rest.removals));
+    let (selected, names) = on_data(prepared, system, &mut warnings)?;
+    let base = estimate(system, &selected, settings)?;
+    let rest = essential(system, &selected, &names, &base, settings)?;
+    warnings.extend(quality_warnings(system, &base, &rest.removals));
     let context = Context {
         prepared,
-        system: &system,
+        system,
         truth: truth(prepared, true_values),
-        kept_actuators: match projection {
+        kept_actuators: match system.projection {
             Projection::Platform => Vec::new(),
             _ => system.line_names.clone(),
         },
@@ -92,16 +74,16 @@ pub fn estimate_projection(
     })
 }
 
-/// True values of the base parameters by column, where they are known.
+/// True values of the base parameters by place, where they are known.
 fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BTreeMap<usize, f64> {
     let Some(values) = true_values else {
         return BTreeMap::new();
     };
     let base = &prepared.base;
     let regrouped = base.regrouped(&prepared.columns, values);
-    let known = base.columns.iter().zip(regrouped);
+    let known = regrouped.into_iter().enumerate();
     known
-        .filter_map(|(&column, value)| value.map(|value| (column, value)))
+        .filter_map(|(place, value)| value.map(|value| (place, value)))
         .collect()
 }
 
@@ -152,14 +134,9 @@ fn on_data(
     let base = &prepared.base;
     let ones = vec![1.0; system.lines.len()];
     let all = Factor::merged(&system.lines, &ones);
-    let found = eliminate(all.matrix(), &base.columns, DATA_RANK_TOLERANCE);
-    let name = |column: usize| -> &str {
-        base.columns
-            .iter()
-            .position(|kept| *kept == column)
-            .and_then(|place| base.names.get(place))
-            .map_or("", String::as_str)
-    };
+    let places: Vec<usize> = (0..base.columns.len()).collect();
+    let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
+    let name = |place: usize| base.names.get(place).map_or("", String::as_str);
     let label = system.projection.name();
     for &column in &found.zero {
         warnings.push(format!(
@@ -212,11 +189,9 @@ fn parameters(
         .map(
             |((&column, name), (&value, (&standard_deviation, &relative)))| {
                 let true_value = truth.get(&column).copied();
-                let unit = prepared
-                    .columns
-                    .as_slice()
-                    .get(column)
-                    .map_or("", |column| column.unit);
+                let standard = prepared.base.columns.get(column);
+                let standard = standard.and_then(|&k| prepared.columns.as_slice().get(k));
+                let unit = standard.map_or("", |column| column.unit);
                 ParameterEstimate {
                     name: name.clone(),
                     unit: unit.to_owned(),
