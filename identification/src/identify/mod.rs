@@ -248,15 +248,24 @@ pub fn identify(
             Err(error) => return Err(error),
         }
     }
-    let (cross_validation, others) = cross_validate(
+    let held_out = cross_validate(
         model,
         &prepared,
         experiment.validation,
         &estimates,
         settings,
-        (&mut warnings, progress),
+        progress,
     )?;
-    let figures = plots::figures(model, &prepared, &estimates, &cross_validation, others)?;
+    warnings.extend(held_out.warnings);
+    let cross_validation = held_out.validations;
+    let figures = plots::figures(
+        model,
+        &prepared,
+        &estimates,
+        &cross_validation,
+        held_out.motions,
+        settings,
+    )?;
     Ok(Identification {
         robot: info.name.to_owned(),
         base_parameters: BaseParameter::all(
@@ -292,16 +301,24 @@ fn projections(model: &dyn Model, settings: &Settings) -> Vec<Projection> {
     }
 }
 
+/// What the runs of the cross-validation tell.
+#[derive(Default)]
+struct HeldOut {
+    validations: Vec<CrossValidation>,
+    motions: Vec<figures::RunFigures>,
+    warnings: Vec<String>,
+}
+
 /// Compares the runs of the cross-validation with the predictions of all estimates, of which each comes
-/// with the number of its projection. The motions of the runs are given, too.
+/// with the number of its projection.
 fn cross_validate(
     model: &dyn Model,
     prepared: &Prepared,
     runs: &[Log],
     estimates: &[(usize, Estimate)],
     settings: &Settings,
-    (warnings, progress): (&mut Vec<String>, &dyn Fn(Progress<'_>)),
-) -> Result<(Vec<CrossValidation>, Vec<figures::RunFigures>), Error> {
+    progress: &dyn Fn(Progress<'_>),
+) -> Result<HeldOut, Error> {
     let observer = Observer {
         model,
         columns: &prepared.columns,
@@ -322,37 +339,37 @@ fn cross_validate(
             values,
         })
         .collect();
-    let (mut all, mut motions, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    let mut held_out = HeldOut::default();
+    let (mut all, mut problems) = (Vec::new(), Vec::new());
     for log in runs {
         let run = log.name();
         let report = |done, samples| progress(Progress::Validation { run, done, samples });
         match validate(&observer, log, &candidates, &report) {
             Ok((validations, motion)) => {
                 all.push((log.payload(), validations));
-                motions.push(motion);
+                held_out.motions.push(motion);
             }
             Err(error) => problems.extend(error.problems),
         }
     }
     Error::check(problems)?;
     // In the order of the estimates, each on all runs.
-    let mut cross_validation = Vec::new();
     for (index, (_, estimate)) in estimates.iter().enumerate() {
         for (payload, validations) in &all {
             match &validations[index] {
-                Ok(validation) => cross_validation.push(CrossValidation::new(
-                    estimate,
-                    *payload,
-                    validation.clone(),
-                )),
+                Ok(validation) => {
+                    let validation = CrossValidation::new(estimate, *payload, validation.clone());
+                    held_out.validations.push(validation);
+                }
                 Err(error) if estimate.stage == Stage::Base => {
-                    warnings.push(format!("no cross-validation: {error}"));
+                    let warning = format!("no cross-validation: {error}");
+                    held_out.warnings.push(warning);
                 }
                 Err(_) => {}
             }
         }
     }
-    Ok((cross_validation, motions))
+    Ok(held_out)
 }
 
 /// How the payload takes part in the runs.

@@ -4,13 +4,17 @@ use overact::{Function, Model};
 
 use super::{
     Prepared,
-    figures::{Figures, PredictionFigures, RunFigures},
+    figures::{
+        Figures, LineResidual, PredictionFigures, ResidualFigures, ResidualSeries, RunFigures,
+    },
     result::{CrossValidation, Estimate},
 };
 use crate::{
     conditioning::least_norm,
+    correlation::line_residual,
     error::Error,
-    regression::Projection,
+    regression::{Projection, System},
+    settings::Settings,
     validation::{Series, platform_input, product},
 };
 
@@ -25,6 +29,7 @@ pub(super) fn figures(
     estimates: &[(usize, Estimate)],
     cross_validation: &[CrossValidation],
     others: Vec<RunFigures>,
+    settings: &Settings,
 ) -> Result<Figures, Error> {
     let own = prepared.seen.iter().map(|seen| RunFigures {
         identified: true,
@@ -44,11 +49,59 @@ pub(super) fn figures(
         lines: one.line_series.clone(),
         torques: one.torque_series.clone(),
     }));
+    let residuals = estimates.iter().filter_map(|(projection, estimate)| {
+        let system = prepared.systems[*projection].as_ref().ok()?;
+        Some(residual(prepared, *projection, system, estimate, settings))
+    });
+    let residuals = residuals.collect();
     Ok(Figures {
         runs: own.chain(others).collect(),
         predictions,
-        residuals: Vec::new(),
+        residuals,
     })
+}
+
+/// The residual of an estimate, over time and as a whole.
+fn residual(
+    prepared: &Prepared,
+    projection: usize,
+    system: &System,
+    estimate: &Estimate,
+    settings: &Settings,
+) -> ResidualFigures {
+    let frequency = prepared
+        .runs
+        .first()
+        .map_or(1.0, |run| run.sampling_frequency);
+    let interval = settings.decimation as f64 / frequency;
+    let (selected, values) = (estimate.columns(), estimate.values());
+    let line = |line: usize| {
+        let runs = prepared
+            .seen
+            .iter()
+            .zip(&prepared.points)
+            .map(|(seen, points)| {
+                let rows = &points[projection][line];
+                let mut residual = rows.column(rows.ncols() - 1).clone_owned();
+                for (&column, value) in selected.iter().zip(&values) {
+                    residual.axpy(-value, &rows.column(column), 1.0);
+                }
+                ResidualSeries {
+                    run: seen.figures.run.clone(),
+                    time: seen.figures.time.clone(),
+                    residual: residual.iter().copied().collect(),
+                }
+            });
+        LineResidual {
+            runs: runs.collect(),
+            ..line_residual(system, line, &selected, &values, interval)
+        }
+    };
+    ResidualFigures {
+        model: estimate.model,
+        stage: estimate.stage,
+        lines: (0..system.lines.len()).map(line).collect(),
+    }
 }
 
 /// Measured and predicted inputs of a run identified from, at the points of the plots. Torques are

@@ -7,6 +7,7 @@ use super::{
     result::{Estimate, ParameterEstimate, Stage},
 };
 use crate::{
+    correlation::Noise,
     elimination::eliminate,
     error::{Error, Problem},
     essential::{Removal, essential},
@@ -49,8 +50,10 @@ pub fn estimate_projection(
     let mut warnings = Vec::new();
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
+    let noise = Noise::new(system, &selected, &base);
     let rest = essential(system, &selected, &names, &base, settings)?;
     warnings.extend(quality_warnings(system, &base, &rest.removals));
+    let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
     let context = Context {
         prepared,
         system,
@@ -62,10 +65,16 @@ pub fn estimate_projection(
         weighted: settings.weighted,
     };
     Ok(Outcome {
-        base: context.estimate(Stage::Base, base, &selected, &names, (Vec::new(), None)),
+        base: context.estimate(
+            Stage::Base,
+            (base, noise),
+            &selected,
+            &names,
+            (Vec::new(), None),
+        ),
         essential: context.estimate(
             Stage::Essential,
-            rest.estimation,
+            (rest.estimation, rest_noise),
             &rest.selected,
             &rest.names,
             (rest.removals, Some(rest.stop)),
@@ -101,7 +110,7 @@ impl Context<'_> {
     fn estimate(
         &self,
         stage: Stage,
-        estimation: Estimation,
+        (estimation, noise): (Estimation, Option<Noise>),
         selected: &[usize],
         names: &[String],
         (removals, stop): (Vec<Removal>, Option<String>),
@@ -111,7 +120,7 @@ impl Context<'_> {
             kept_actuators: self.kept_actuators.clone(),
             stage,
             weighted: self.weighted,
-            parameters: parameters(self.prepared, &estimation, selected, names, &self.truth),
+            parameters: self.parameters((&estimation, noise.as_ref()), selected, names),
             residual_norm: estimation.residual_norm,
             relative_error_percent: estimation.relative_error_percent,
             condition_number: estimation.condition_number,
@@ -122,6 +131,46 @@ impl Context<'_> {
             removals,
             stop,
         }
+    }
+
+    /// Joins estimates, names and true values.
+    fn parameters(
+        &self,
+        (estimation, noise): (&Estimation, Option<&Noise>),
+        selected: &[usize],
+        names: &[String],
+    ) -> Vec<ParameterEstimate> {
+        let prepared = self.prepared;
+        let correlated = noise.map_or_else(
+            || estimation.standard_deviations.clone(),
+            |noise| noise.deviations(selected, estimation),
+        );
+        let parameter = |(place, (&column, name)): (usize, (&usize, &String))| {
+            let value = estimation.values[place];
+            let true_value = self.truth.get(&column).copied();
+            let standard = prepared.base.columns.get(column);
+            let standard = standard.and_then(|&k| prepared.columns.as_slice().get(k));
+            ParameterEstimate {
+                name: name.clone(),
+                unit: standard.map_or("", |column| column.unit).to_owned(),
+                column,
+                value,
+                standard_deviation: estimation.standard_deviations[place],
+                relative_standard_deviation_percent: estimation
+                    .relative_standard_deviations_percent[place],
+                correlated_standard_deviation: correlated[place],
+                true_value,
+                error_percent: true_value
+                    .filter(|truth| *truth != 0.0)
+                    .map(|truth| 100.0 * (value - truth) / truth.abs()),
+            }
+        };
+        selected
+            .iter()
+            .zip(names)
+            .enumerate()
+            .map(parameter)
+            .collect()
     }
 }
 
@@ -168,46 +217,6 @@ fn on_data(
         .map(|&column| name(column).to_owned())
         .collect();
     Ok((found.kept, names))
-}
-
-/// Joins estimates, names and true values.
-fn parameters(
-    prepared: &Prepared,
-    estimation: &Estimation,
-    selected: &[usize],
-    names: &[String],
-    truth: &BTreeMap<usize, f64>,
-) -> Vec<ParameterEstimate> {
-    let deviations = estimation
-        .standard_deviations
-        .iter()
-        .zip(&estimation.relative_standard_deviations_percent);
-    selected
-        .iter()
-        .zip(names)
-        .zip(estimation.values.iter().zip(deviations))
-        .map(
-            |((&column, name), (&value, (&standard_deviation, &relative)))| {
-                let true_value = truth.get(&column).copied();
-                let standard = prepared.base.columns.get(column);
-                let standard = standard.and_then(|&k| prepared.columns.as_slice().get(k));
-                let unit = standard.map_or("", |column| column.unit);
-                ParameterEstimate {
-                    name: name.clone(),
-                    unit: unit.to_owned(),
-                    column,
-                    value,
-                    standard_deviation,
-                    relative_standard_deviation_percent: relative,
-                    correlated_standard_deviation: standard_deviation,
-                    true_value,
-                    error_percent: true_value
-                        .filter(|truth| *truth != 0.0)
-                        .map(|truth| 100.0 * (value - truth) / truth.abs()),
-                }
-            },
-        )
-        .collect()
 }
 
 /// What is wrong with a system, its estimate or its elimination.
