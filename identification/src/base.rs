@@ -191,17 +191,32 @@ fn random_regressor(
         twist,
         acceleration,
     } = random_states(model, count, seed)?;
-    let mut values = columns
-        .evaluate(model, &[&pose, &twist, &acceleration], samples, true)
+    let width = columns.len();
+    let all: Vec<usize> = (0..width).collect();
+    let states = [&pose[..], &twist, &acceleration];
+    let lines = columns
+        .evaluate(model, &states, samples, true, (&all, 0))
         .map_err(|error| Error::from(Problem::new(error.to_string())))?;
-    let width = columns.len().max(1);
-    for state in values.chunks_exact_mut(r * width) {
-        let largest = state
-            .iter()
-            .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let mut regressor = DMatrix::zeros(samples * r, width);
+    for sample in 0..samples {
+        let rows = || {
+            lines
+                .iter()
+                .map(|line| &line[sample * width..(sample + 1) * width])
+        };
+        let largest = rows()
+            .flatten()
+            .fold(0.0_f64, |m, value| m.max(value.abs()));
         if largest > 0.0 {
-            state.iter_mut().for_each(|value| *value /= largest);
+            for (line, row) in rows().enumerate() {
+                let mut place = regressor.row_mut(sample * r + line);
+                let scaled = row.iter().map(|value| value / largest);
+                place
+                    .iter_mut()
+                    .zip(scaled)
+                    .for_each(|(to, value)| *to = value);
+            }
         }
     }
-    Ok(DMatrix::from_row_slice(samples * r, columns.len(), &values))
+    Ok(regressor)
 }

@@ -155,8 +155,9 @@ impl ColumnSet {
             .collect()
     }
 
-    /// Evaluates the columns in case 1, samples x r x columns, row-major. The payload's are zero
-    /// in an unloaded run, eq. (49).
+    /// Evaluates the columns `picked` in case 1: for each of the r lines, samples x (picked + `more`),
+    /// row-major, with room for more columns behind. The payload's are zero in an unloaded run,
+    /// eq. (49).
     ///
     /// # Errors
     /// The first sample at which the model has no value.
@@ -166,7 +167,8 @@ impl ColumnSet {
         states: &[&[f64]; 3],
         samples: usize,
         loaded: bool,
-    ) -> Result<Vec<f64>, SampleError> {
+        (picked, more): (&[usize], usize),
+    ) -> Result<Vec<Vec<f64>>, SampleError> {
         let sizes = model.info().sizes;
         let ask = |function: Function, wanted: bool| -> Result<Vec<f64>, SampleError> {
             let (rows, columns) = function.shape(&sizes);
@@ -176,39 +178,45 @@ impl ColumnSet {
             }
             Ok(output)
         };
-        let split = self.columns.iter().any(|column| column.direction.is_some());
-        let has_payload = self
-            .columns
-            .iter()
-            .any(|column| matches!(column.source, Source::Payload(_)));
+        let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
+        let split = columns().any(|column| column.direction.is_some());
+        let has_payload = columns().any(|column| matches!(column.source, Source::Payload(_)));
         let robot = ask(Function::IdmRedPlatform, true)?;
         let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
         let velocities = ask(Function::JointVelocities, split)?;
-        let mut output = Vec::with_capacity(samples * sizes.dof * self.columns.len());
-        for sample in 0..samples {
-            for row in sample * sizes.dof..(sample + 1) * sizes.dof {
-                output.extend(self.columns.iter().map(|column| {
-                    let (values, index) = match column.source {
-                        Source::Robot(k) => (&robot, row * sizes.parameters + k),
-                        Source::Payload(k) => (&payload, row * sizes.payload_parameters + k),
+        let width = picked.len() + more;
+        let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
+        for (place, column) in columns().enumerate() {
+            let (values, count, index) = match column.source {
+                Source::Robot(k) => (&robot, sizes.parameters, k),
+                Source::Payload(k) => (&payload, sizes.payload_parameters, k),
+            };
+            if values.is_empty() {
+                continue;
+            }
+            for (line, rows) in lines.iter_mut().enumerate() {
+                let from = values[line * count + index..]
+                    .iter()
+                    .step_by(count * sizes.dof);
+                let to = rows[place..].iter_mut().step_by(width);
+                to.zip(from).for_each(|(to, from)| *to = *from);
+            }
+            if let Some((joint, direction)) = column.direction {
+                let moves = velocities[joint..].iter().step_by(sizes.joints);
+                for (sample, velocity) in moves.enumerate() {
+                    let acts = match direction {
+                        Direction::Positive => *velocity > 0.0,
+                        Direction::Negative => *velocity < 0.0,
                     };
-                    let acts = column.direction.is_none_or(|(joint, direction)| {
-                        let velocity = velocities.get(sample * sizes.joints + joint);
-                        velocity.is_some_and(|v| match direction {
-                            Direction::Positive => *v > 0.0,
-                            Direction::Negative => *v < 0.0,
-                        })
-                    });
-                    // The payload's values are missing in an unloaded run: zero.
-                    if acts {
-                        values.get(index).copied().unwrap_or(0.0)
-                    } else {
-                        0.0
+                    if !acts {
+                        lines
+                            .iter_mut()
+                            .for_each(|rows| rows[sample * width + place] = 0.0);
                     }
-                }));
+                }
             }
         }
-        Ok(output)
+        Ok(lines)
     }
 }
 

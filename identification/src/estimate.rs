@@ -46,6 +46,10 @@ pub struct Estimation {
     pub residual_deviation: f64,
     /// Each line of Γ.
     pub lines: Vec<LineError>,
+    /// Weight of each line's equations.
+    pub weights: Vec<f64>,
+    /// R^-1 of the weighted system: its rows have the norms of the deviations but for σ_ρ.
+    pub(crate) inverse: DMatrix<f64>,
 }
 
 impl Estimation {
@@ -189,6 +193,8 @@ pub fn estimate(
         residual_deviation: deviation,
         lines,
         values,
+        weights,
+        inverse,
     })
 }
 

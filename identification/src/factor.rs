@@ -45,6 +45,24 @@ impl Factor {
         }
     }
 
+    /// Adds equations that come row by row, row-major.
+    pub(crate) fn push_rows(&mut self, rows: &[f64]) {
+        let size = self.r.ncols();
+        self.push(&DMatrix::from_row_slice(rows.len() / size, size, rows));
+    }
+
+    /// Rows that are worth a factorisation.
+    pub(crate) fn worthwhile(&self) -> usize {
+        BLOCK_RATIO * self.r.ncols()
+    }
+
+    /// Adds the equations of another factor.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.equations += other.equations;
+        self.sums += &other.sums;
+        self.absorb(&other.r);
+    }
+
     /// Adds the equations of other factors, each scaled by a weight.
     #[must_use]
     pub fn merged(factors: &[Self], weights: &[f64]) -> Self {

@@ -21,6 +21,8 @@
 pub mod base;
 mod blocks;
 pub mod columns;
+mod conditioning;
+mod correlation;
 pub mod data;
 mod elimination;
 mod error;
@@ -28,11 +30,14 @@ pub mod essential;
 pub mod estimate;
 pub mod factor;
 pub mod filters;
+mod fourier;
 pub mod identify;
 pub mod kinematics;
+mod observation;
 pub mod regression;
 pub mod report;
 pub mod settings;
+mod sink;
 pub mod states;
 pub mod validation;
 
@@ -52,7 +57,7 @@ pub use identify::{
     identify,
     verdict::{Finding, FindingKind, Thresholds, TrackingError, Verdict},
 };
-pub use kinematics::{Motion, motion};
-pub use regression::{PartitionCondition, Projection, System, system};
+pub use kinematics::{Motion, Motions, motion};
+pub use regression::{Part, PartitionCondition, Projection, Stretch, System};
 pub use settings::{Normalisation, Settings};
-pub use validation::{Series, TorqueComparison, Validation, validate, validate_equations};
+pub use validation::{Series, TorqueComparison, Validation};

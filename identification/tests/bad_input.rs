@@ -36,8 +36,9 @@ fn a_good_file_is_read() {
     let (log, _folder) =
         csv("# a comment\ntime, q_1, other, tau_1\n0,1,x,3\n0.1,2,y,4\n0.2,5,z,6\n");
     let log = log.expect("a log");
-    assert_eq!(log.positions(), [1.0, 2.0, 5.0]);
-    assert_eq!(log.torques(), [3.0, 4.0, 6.0]);
+    let (positions, torques) = log.load().expect("numbers");
+    assert_eq!(positions, [1.0, 2.0, 5.0]);
+    assert_eq!(torques, [3.0, 4.0, 6.0]);
     assert!((log.sampling_frequency() - 10.0).abs() < 1e-12);
 }
 

@@ -2,7 +2,9 @@
 
 mod common;
 
-use overact_identification::filters::{butterworth, chebyshev1, decimate, filtfilt};
+use overact_identification::filters::{
+    Decimator, ZeroPhase, butterworth, chebyshev1, decimate, filtfilt,
+};
 use serde_json::Value;
 
 /// A list of numbers of the reference.
@@ -159,4 +161,111 @@ fn impossible_filters_are_errors() {
     );
     assert!(decimate(&[1.0; 30], 0).is_err());
     assert_eq!(decimate(&[1.0, 2.0], 1).expect("unfiltered"), [1.0, 2.0]);
+}
+
+/// A signal with slow and fast parts and a jump.
+fn signal(samples: usize, shift: f64) -> Vec<f64> {
+    let mut noise = 0x2545_f491_u64;
+    (0..samples)
+        .map(|k| {
+            noise = noise
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let white = (noise >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            let t = k as f64 * 1e-3 + shift;
+            (2.0 * t).sin()
+                + 0.3 * (40.0 * t).cos()
+                + white
+                + if k > samples / 3 { 2.0 } else { 0.0 }
+        })
+        .collect()
+}
+
+/// Pushes rows in blocks; the length of what had come before the last block.
+fn pushed(
+    rows: &[f64],
+    block: usize,
+    mut push: impl FnMut(&[f64], &mut Vec<f64>),
+) -> (Vec<f64>, usize) {
+    let (mut found, mut early) = (Vec::new(), 0);
+    for rows in rows.chunks(block) {
+        early = found.len();
+        push(rows, &mut found);
+    }
+    (found, early)
+}
+
+#[test]
+fn blocks_give_what_the_whole_signal_gives() {
+    const SAMPLES: usize = 61_234;
+    let signals = [signal(SAMPLES, 0.0), signal(SAMPLES, 5.0)];
+    let rows: Vec<f64> = (0..SAMPLES)
+        .flat_map(|k| signals.iter().map(move |signal| signal[k]))
+        .collect();
+    let column =
+        |rows: &[f64], index| -> Vec<f64> { rows.iter().skip(index).step_by(2).copied().collect() };
+    for (name, filter) in [
+        ("even order", butterworth(4, 0.04)),
+        ("odd order", butterworth(5, 0.1)),
+    ] {
+        let filter = filter.expect("a design");
+        let whole = signals
+            .each_ref()
+            .map(|signal| filtfilt(&filter, signal).expect("long enough"));
+        // Blocks of all sizes, from single samples on.
+        for block in [1, 7, 5_000, SAMPLES] {
+            let mut stream = ZeroPhase::new(&filter, 2, SAMPLES).expect("long enough");
+            let (found, early) = pushed(&rows, 2 * block, |rows, found| stream.push(rows, found));
+            assert!(block == SAMPLES || early > 0, "{name}: all came at the end");
+            for (index, whole) in whole.iter().enumerate() {
+                close(&column(&found, index), whole, 1e-12, name);
+            }
+        }
+    }
+    for factor in [1, 2, 5, 20, 50] {
+        let decimator = Decimator::new(factor).expect("a factor");
+        // Sample by sample, with the same sections.
+        let first = (SAMPLES - 1) % factor;
+        let whole = signals.each_ref().map(|signal| {
+            if factor == 1 {
+                return signal.clone();
+            }
+            let filter = chebyshev1(8, 0.05, 0.8 / factor as f64).expect("a design");
+            let filtered = filtfilt(&filter, signal).expect("long enough");
+            filtered.into_iter().skip(first).step_by(factor).collect()
+        });
+        for block in [1, 7, 5_000, SAMPLES] {
+            let mut stream = decimator.stream(2, SAMPLES).expect("long enough");
+            let (found, early) = pushed(&rows, 2 * block, |rows, found| stream.push(rows, found));
+            assert!(
+                block == SAMPLES || factor == 50 || early > 0,
+                "{factor}: all came at the end"
+            );
+            for (index, whole) in whole.iter().enumerate() {
+                close(
+                    &column(&found, index),
+                    whole,
+                    1e-11,
+                    &format!("decimation by {factor}"),
+                );
+            }
+        }
+    }
+    // As short as can be.
+    for samples in 25..40 {
+        let signal = signal(samples, 1.0);
+        let filter = chebyshev1(8, 0.05, 0.8 / 10.0).expect("a design");
+        let whole: Vec<f64> = filtfilt(&filter, &signal).expect("long enough");
+        let kept: Vec<f64> = whole
+            .into_iter()
+            .skip((samples - 1) % 10)
+            .step_by(10)
+            .collect();
+        close(
+            &decimate(&signal, 10).expect("long enough"),
+            &kept,
+            1e-11,
+            "short",
+        );
+    }
 }

@@ -53,6 +53,8 @@ fn system(lines: &[(DMatrix<f64>, DVector<f64>)]) -> System {
         projection: Projection::Platform,
         line_names: ["x", "y", "phi"].map(String::from).to_vec(),
         lines: factors.collect(),
+        parts: Vec::new(),
+        stretches: Vec::new(),
         partition: None,
     }
 }

@@ -262,15 +262,14 @@ fn friction_splits_by_the_direction_of_each_joint() {
 fn many_partitions_share_one_preparation() {
     let runs = [run("unloaded", 1.0, false, 0.0)];
     let steps = RefCell::new(Vec::new());
-    let prepared = prepare(&PAIR, &runs, &settings(), &|step| {
+    let projections = [0, 1].map(|kept| Projection::Actuators(vec![kept]));
+    let prepared = prepare(&PAIR, &runs, &projections, &settings(), &|step| {
         steps.borrow_mut().push(format!("{step:?}"));
     })
     .expect("prepared");
-    for kept in [0, 1] {
-        let projection = Projection::Actuators(vec![kept]);
+    for projection in 0..2 {
         let outcome =
-            estimate_projection(&PAIR, &prepared, &projection, &settings(), None, &|_| {})
-                .expect("an estimate");
+            estimate_projection(&prepared, projection, &settings(), None).expect("an estimate");
         assert!((outcome.base.parameters[0].value - 5.8).abs() < EXACT * 5.8);
         assert!(outcome.base.parameters[0].true_value.is_none());
     }

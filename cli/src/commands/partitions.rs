@@ -75,19 +75,19 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let runs = arguments.runs.runs(&robot, &served, as_json)?;
     let settings = arguments.runs.settings(&robot, &info, &runs);
+    let choices = choices(info.sizes.actuators, info.sizes.dof);
+    let mut projections = vec![Projection::Platform];
+    projections.extend(choices.iter().cloned().map(Projection::Actuators));
     let bar = Progress::new("comparing", as_json);
-    let prepared = prepare(&served, &runs.runs, &settings, &|stage| {
+    let prepared = prepare(&served, &runs.runs, &projections, &settings, &|stage| {
         runs::tell(&bar, stage)
     })?;
-    let (platform, reference) =
-        estimated(&served, &prepared, &settings, &Projection::Platform, None)?;
-    let choices = choices(info.sizes.actuators, info.sizes.dof);
+    let (platform, reference) = estimated(&prepared, &settings, 0, None)?;
     let mut partitions = Vec::new();
     for (at, kept) in choices.iter().enumerate() {
         let names: Vec<String> = kept.iter().map(|&i| info.actuators[i].to_owned()).collect();
         bar.at(at as f64 / choices.len() as f64, &names.join(", "));
-        let projection = Projection::Actuators(kept.clone());
-        let row = match estimated(&served, &prepared, &settings, &projection, Some(&reference)) {
+        let row = match estimated(&prepared, &settings, at + 1, Some(&reference)) {
             Ok((row, _)) => row,
             Err(error) => Row::without(names, &error),
         };
@@ -113,13 +113,12 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 type Deviations = BTreeMap<String, f64>;
 
 fn estimated(
-    served: &InterpretedRobot,
     prepared: &Prepared,
     settings: &Settings,
-    projection: &Projection,
+    projection: usize,
     reference: Option<&Deviations>,
 ) -> Result<(Row, Deviations), overact_identification::Error> {
-    let outcome = estimate_projection(served, prepared, projection, settings, None, &|_| {})?;
+    let outcome = estimate_projection(prepared, projection, settings, None)?;
     let base = &outcome.base;
     let parameters = base.parameters.iter();
     let deviations: Deviations = parameters

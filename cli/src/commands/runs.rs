@@ -194,16 +194,13 @@ fn log(record: Record) -> Result<Log, overact_identification::Error> {
 
 /// Shows what the identification is doing.
 pub(super) fn tell(bar: &Progress, stage: Stage<'_>) {
+    let part = |done: usize, samples: usize| done as f64 / samples.max(1) as f64;
     match stage {
-        Stage::Kinematics { run, done, samples } => {
-            bar.at(
-                done as f64 / samples.max(1) as f64,
-                &format!("motion of {run}"),
-            );
-        }
         Stage::Base => bar.at(0.0, "base parameters"),
-        Stage::Equations { model, run } => bar.at(0.3, &format!("{model}: equations of {run}")),
-        Stage::Estimation { model } => bar.at(0.8, &format!("{model}: estimation")),
-        Stage::Validation { run } => bar.at(0.9, &format!("cross-validation on {run}")),
+        Stage::Run { run, done, samples } => bar.at(part(done, samples), run),
+        Stage::Estimation { model } => bar.at(1.0, &format!("{model}: estimation")),
+        Stage::Validation { run, done, samples } => {
+            bar.at(part(done, samples), &format!("cross-validation on {run}"));
+        }
     }
 }

@@ -1,14 +1,29 @@
 //! CSV files with a header; lines that start with `#` are comments.
+//!
+//! A file is looked through once, from end to end, when it is opened: every cell is checked, samples
+//! are counted and the frequency is told. A small one is in memory then; a large one is read again,
+//! row by row, whenever its run is gone through.
 
-use std::{fs::File, io, path::Path};
+use std::{
+    fs::File,
+    io::BufReader,
+    path::{Path, PathBuf},
+};
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
 
 use super::{
-    Gain, LARGEST_NUMBER_OF_PROBLEMS, Log, Mapping, Table, display_name, missing_columns,
-    unreadable,
+    Gain, LARGEST_NUMBER_OF_PROBLEMS, Log, Mapping, display_name,
+    log::{Clock, Samples},
+    missing_columns, unreadable,
 };
 use crate::error::{Error, Problem};
+
+/// Numbers of one file that are kept in memory (8 MB).
+const LARGEST_IN_MEMORY: usize = 1 << 20;
+
+/// Bytes that are read at once.
+const BUFFER: usize = 1 << 18;
 
 /// Reads a run from a CSV file.
 ///
@@ -18,10 +33,51 @@ use crate::error::{Error, Problem};
 pub fn read_csv(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
     let file = display_name(path);
     mapping.check()?;
-    let gains = constant_gains(&file, mapping)?;
-    let input = File::open(path).map_err(|error| unreadable(&file, &error))?;
-    let table = read_table(&file, input, mapping)?;
-    table.into_log(mapping, &gains, payload)
+    let source = Source {
+        gains: constant_gains(&file, mapping)?,
+        file,
+        path: path.to_owned(),
+        mapping: mapping.clone(),
+    };
+    let mut rows = source.open()?;
+    let mut clock = Clock::default();
+    let mut samples = Samples::default();
+    let mut problems = Vec::new();
+    let mut fits = true;
+    loop {
+        match rows.next(&mut samples) {
+            Ok(true) => clock.push(rows.time, Some(rows.line)),
+            Ok(false) => break,
+            Err(error) => problems.extend(error.problems),
+        }
+        if rows.is_broken || problems.len() >= LARGEST_NUMBER_OF_PROBLEMS {
+            break;
+        }
+        if fits && 2 * samples.positions.len() > LARGEST_IN_MEMORY {
+            fits = false;
+        }
+        if !fits {
+            samples.positions.clear();
+            samples.torques.clear();
+        }
+    }
+    Error::check(problems)?;
+    let count = clock.samples();
+    let frequency = clock.frequency(&source.file)?;
+    if fits {
+        let Samples { positions, torques } = samples;
+        let actuators = source.actuators();
+        Log::new(
+            source.file,
+            frequency,
+            actuators,
+            positions,
+            torques,
+            payload,
+        )
+    } else {
+        Ok(Log::in_file(source, frequency, count, payload))
+    }
 }
 
 /// The gains of the mapping, which must all be numbers: a CSV file has no scalar variables.
@@ -45,57 +101,129 @@ fn constant_gains(file: &str, mapping: &Mapping) -> Result<Vec<f64>, Error> {
     Ok(gains)
 }
 
-/// Reads the columns that the mapping names.
-fn read_table(file: &str, input: impl io::Read, mapping: &Mapping) -> Result<Table, Error> {
-    let mut reader = ReaderBuilder::new()
-        .trim(Trim::All)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .from_reader(input);
-    let broken = |error: csv::Error| -> Problem {
+/// A file and what its columns mean.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Source {
+    /// The file as the caller named it.
+    file: String,
+    path: PathBuf,
+    mapping: Mapping,
+    gains: Vec<f64>,
+}
+
+impl Source {
+    /// The file as the caller named it.
+    pub(super) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Number of actuators.
+    pub(super) fn actuators(&self) -> usize {
+        self.mapping.positions.len()
+    }
+
+    /// Opens the file and finds its columns.
+    pub(super) fn open(&self) -> Result<Rows<'_>, Error> {
+        let input = File::open(&self.path).map_err(|error| unreadable(&self.file, &error))?;
+        let mut reader = ReaderBuilder::new()
+            .trim(Trim::All)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .from_reader(BufReader::with_capacity(BUFFER, input));
+        let header = match reader.headers() {
+            Ok(header) => header.clone(),
+            Err(error) => return Err(self.broken(&error).into()),
+        };
+        let names = self.mapping.names();
+        let indices = find_columns(&self.file, &header, &names)?;
+        let ones = std::iter::once(&1.0);
+        let scales = ones.chain(&self.mapping.position_scale).chain(&self.gains);
+        Ok(Rows {
+            source: self,
+            scales: scales.copied().collect(),
+            names,
+            indices,
+            reader,
+            record: ByteRecord::new(),
+            time: 0.0,
+            line: 0,
+            is_broken: false,
+        })
+    }
+
+    /// A file that is no CSV.
+    fn broken(&self, error: &csv::Error) -> Problem {
         let line = error.position().map(|position| position.line() as usize);
-        let problem = Problem::new(format!("the file is not CSV: {error}")).file(file);
-        line.map_or(problem.clone(), |line| problem.line(line))
-    };
-    let header = reader.headers().map_err(broken)?.clone();
-    let names = mapping.names();
-    let indices = find_columns(file, &header, &names)?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
-    let mut lines = Vec::new();
-    let mut problems = Vec::new();
-    let mut record = StringRecord::new();
-    while reader.read_record(&mut record).map_err(broken)? {
-        // The record's own position is before comments and empty lines that precede it; the
-        // reader's is behind its line break, if it has one.
-        let before = record.position().map_or(0, csv::Position::line);
-        let line = before.max(reader.position().line().saturating_sub(1)) as usize;
-        lines.push(line);
-        for ((name, index), column) in names.iter().zip(&indices).zip(&mut columns) {
-            match number(record.get(*index)) {
-                Ok(value) => column.push(value),
-                Err(message) => {
-                    problems.push(
-                        Problem::new(format!("column `{name}`: {message}"))
-                            .file(file)
-                            .line(line)
-                            .column(*name),
-                    );
-                }
-            }
-        }
-        if problems.len() >= LARGEST_NUMBER_OF_PROBLEMS {
-            break;
+        let problem =
+            Problem::new(format!("the file is not CSV: {error}")).file(self.file.as_str());
+        match line {
+            Some(line) => problem.line(line),
+            None => problem,
         }
     }
-    Error::check(problems)?;
-    let mut columns = columns.into_iter();
-    Ok(Table {
-        file: file.to_owned(),
-        lines: Some(lines),
-        time: columns.next().unwrap_or_default(),
-        positions: columns.by_ref().take(mapping.positions.len()).collect(),
-        torques: columns.collect(),
-    })
+}
+
+/// The rows of a file that is being read.
+#[derive(Debug)]
+pub(super) struct Rows<'a> {
+    source: &'a Source,
+    /// Of time, positions and torques: names, places among the columns, factors to SI units.
+    names: Vec<&'a str>,
+    indices: Vec<usize>,
+    scales: Vec<f64>,
+    reader: csv::Reader<BufReader<File>>,
+    record: ByteRecord,
+    /// Time of the last row, s, and its line in the file.
+    time: f64,
+    line: usize,
+    /// Whether nothing more can be read.
+    is_broken: bool,
+}
+
+impl Rows<'_> {
+    /// Appends the next row; `false` at the end.
+    ///
+    /// # Errors
+    /// Every cell of the row that is no finite number, or a file that can't be read on.
+    pub(super) fn next(&mut self, samples: &mut Samples) -> Result<bool, Error> {
+        match self.reader.read_byte_record(&mut self.record) {
+            Ok(true) => {}
+            Ok(false) => return Ok(false),
+            Err(error) => {
+                self.is_broken = true;
+                return Err(self.source.broken(&error).into());
+            }
+        }
+        // The record's own position is before comments and empty lines that precede it; the
+        // reader's is behind its line break, if it has one.
+        let before = self.record.position().map_or(0, csv::Position::line);
+        let behind = self.reader.position().line().saturating_sub(1);
+        self.line = before.max(behind) as usize;
+        let n = self.source.actuators();
+        let mut problems = Vec::new();
+        for (place, (&index, scale)) in self.indices.iter().zip(&self.scales).enumerate() {
+            let value = match number(self.record.get(index)) {
+                Ok(value) => value * scale,
+                Err(message) => {
+                    let name = self.names[place];
+                    problems.push(
+                        Problem::new(format!("column `{name}`: {message}"))
+                            .file(self.source.file.as_str())
+                            .line(self.line)
+                            .column(name),
+                    );
+                    f64::NAN
+                }
+            };
+            match place {
+                0 => self.time = value,
+                _ if place <= n => samples.positions.push(value),
+                _ => samples.torques.push(value),
+            }
+        }
+        Error::check(problems)?;
+        Ok(true)
+    }
 }
 
 /// The positions of the named columns in the header.
@@ -117,14 +245,15 @@ fn find_columns(file: &str, header: &StringRecord, names: &[&str]) -> Result<Vec
 }
 
 /// A cell as a finite number, or what is wrong with it.
-fn number(cell: Option<&str>) -> Result<f64, String> {
+fn number(cell: Option<&[u8]>) -> Result<f64, String> {
     let Some(cell) = cell else {
         return Err(String::from("the line ends before this column"));
     };
-    match cell.parse::<f64>() {
+    let text = String::from_utf8_lossy(cell);
+    match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("`{cell}` is not a finite number")),
-        Err(_) if cell.is_empty() => Err(String::from("the cell is empty")),
-        Err(_) => Err(format!("`{cell}` is not a number")),
+        Ok(_) => Err(format!("`{text}` is not a finite number")),
+        Err(_) if text.is_empty() => Err(String::from("the cell is empty")),
+        Err(_) => Err(format!("`{text}` is not a number")),
     }
 }

@@ -1,9 +1,17 @@
-//! One run: uniformly sampled positions and torques of all actuators.
+//! One run: uniformly sampled positions and torques of all actuators, in memory or in a file that is
+//! read block by block whenever it is gone through.
 
+use super::csv_file;
 use crate::error::{Error, Problem};
 
 /// A step of time may differ from the usual one by this fraction.
 const STEP_TOLERANCE: f64 = 1e-3;
+
+/// Steps from which the usual one is told.
+const FIRST_STEPS: usize = 4096;
+
+/// Rows of a block.
+const BLOCK_ROWS: usize = 4096;
 
 /// One measured or virtual run.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,9 +19,18 @@ pub struct Log {
     name: String,
     sampling_frequency: f64,
     actuators: usize,
-    positions: Vec<f64>,
-    torques: Vec<f64>,
+    samples: usize,
+    source: Source,
     payload: bool,
+}
+
+/// Where the numbers are.
+#[derive(Debug, Clone, PartialEq)]
+enum Source {
+    /// Positions and torques, samples x n each.
+    Memory(Vec<f64>, Vec<f64>),
+    /// A CSV file that has been looked through before.
+    Csv(csv_file::Source),
 }
 
 impl Log {
@@ -63,10 +80,27 @@ impl Log {
             name,
             sampling_frequency,
             actuators,
-            positions,
-            torques,
+            samples: positions.len() / actuators,
+            source: Source::Memory(positions, torques),
             payload,
         })
+    }
+
+    /// A run that stays in its file.
+    pub(super) fn in_file(
+        source: csv_file::Source,
+        sampling_frequency: f64,
+        samples: usize,
+        payload: bool,
+    ) -> Self {
+        Self {
+            name: source.file().to_owned(),
+            sampling_frequency,
+            actuators: source.actuators(),
+            samples,
+            source: Source::Csv(source),
+            payload,
+        }
     }
 
     /// Name of the run: its file as the caller named it.
@@ -84,7 +118,7 @@ impl Log {
     /// Number of samples.
     #[must_use]
     pub const fn samples(&self) -> usize {
-        self.positions.len() / self.actuators
+        self.samples
     }
 
     /// n, number of actuators.
@@ -93,75 +127,213 @@ impl Log {
         self.actuators
     }
 
-    /// Positions, samples x n, row-major (m, rad).
-    #[must_use]
-    pub fn positions(&self) -> &[f64] {
-        &self.positions
-    }
-
-    /// Torques, samples x n, row-major (N, N m).
-    #[must_use]
-    pub fn torques(&self) -> &[f64] {
-        &self.torques
-    }
-
     /// Whether the platform carried the payload.
     #[must_use]
     pub const fn payload(&self) -> bool {
         self.payload
     }
 
-    /// The position of one actuator over time (m, rad).
-    pub(crate) fn position_column(&self, actuator: usize) -> Vec<f64> {
-        self.positions
-            .iter()
-            .skip(actuator)
-            .step_by(self.actuators)
-            .copied()
-            .collect()
+    /// Whether the numbers are in memory, not in a file that is read again and again.
+    #[must_use]
+    pub const fn in_memory(&self) -> bool {
+        matches!(self.source, Source::Memory(..))
+    }
+
+    /// The same run under the opposite label of its payload.
+    #[must_use]
+    pub fn with_payload(mut self, payload: bool) -> Self {
+        self.payload = payload;
+        self
+    }
+
+    /// Goes through the run from its first sample on.
+    ///
+    /// # Errors
+    /// A file that can't be opened any more.
+    pub fn reader(&self) -> Result<Reader<'_>, Error> {
+        let rows = match &self.source {
+            Source::Memory(positions, torques) => Rows::Memory(positions, torques),
+            Source::Csv(source) => Rows::Csv(Box::new(source.open()?)),
+        };
+        Ok(Reader {
+            rows,
+            name: &self.name,
+            width: self.actuators,
+            left: self.samples,
+        })
+    }
+
+    /// All positions (m, rad) and all torques (N, N m), samples x n each, row-major.
+    ///
+    /// # Errors
+    /// As [`Log::reader`] and [`Reader::next`].
+    pub fn load(&self) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let (mut positions, mut torques) = (Vec::new(), Vec::new());
+        let mut reader = self.reader()?;
+        while let Some(block) = reader.next()? {
+            positions.extend(block.positions);
+            torques.extend(block.torques);
+        }
+        Ok((positions, torques))
     }
 }
 
-/// The sampling frequency (Hz) of a time column, from its mean step. `lines` are the lines of the
-/// file on which the samples stand.
-///
-/// # Errors
-/// Fewer than two samples, or the first step that is not the usual one.
-pub(super) fn uniform_frequency(
-    file: &str,
-    time: &[f64],
-    lines: Option<&[usize]>,
-) -> Result<f64, Error> {
-    let (Some(first), Some(last)) = (time.first(), time.last()) else {
-        return Err(Problem::new("the run is empty").file(file).into());
-    };
-    if time.len() < 2 {
-        return Err(Problem::new("the run has a single sample")
-            .file(file)
-            .into());
+/// Some successive samples of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Samples {
+    /// Positions, samples x n, row-major (m, rad).
+    pub positions: Vec<f64>,
+    /// Torques, samples x n, row-major (N, N m).
+    pub torques: Vec<f64>,
+}
+
+/// A run that is gone through.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    rows: Rows<'a>,
+    name: &'a str,
+    width: usize,
+    /// Samples that have not been given out.
+    left: usize,
+}
+
+/// The rest of the numbers.
+#[derive(Debug)]
+enum Rows<'a> {
+    Memory(&'a [f64], &'a [f64]),
+    Csv(Box<csv_file::Rows<'a>>),
+}
+
+impl Reader<'_> {
+    /// The next block of samples, or `None` at the end.
+    ///
+    /// # Errors
+    /// A file that can't be read any more, or that has changed since it was looked through.
+    #[expect(clippy::should_implement_trait, reason = "an iterator has no errors")]
+    pub fn next(&mut self) -> Result<Option<Samples>, Error> {
+        let count = BLOCK_ROWS.min(self.left);
+        if count == 0 {
+            return Ok(None);
+        }
+        self.left -= count;
+        let size = count * self.width;
+        match &mut self.rows {
+            Rows::Memory(positions, torques) => {
+                let (now, later) = positions.split_at(size);
+                *positions = later;
+                let block = Samples {
+                    positions: now.to_vec(),
+                    torques: torques[..size].to_vec(),
+                };
+                *torques = &torques[size..];
+                Ok(Some(block))
+            }
+            Rows::Csv(rows) => {
+                let mut block = Samples::default();
+                for _ in 0..count {
+                    if !rows.next(&mut block)? {
+                        let problem = Problem::new("the file has become shorter while it was read");
+                        return Err(problem.file(self.name).into());
+                    }
+                }
+                Ok(Some(block))
+            }
+        }
     }
-    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let found = steps.clone();
-    steps.sort_by(f64::total_cmp);
-    // The median stays right when samples are missing; the mean would not.
-    let expected = steps[steps.len() / 2];
-    let bad = found.iter().position(|step| {
+}
+
+/// Checks that times are uniform, one after the other, and tells the sampling frequency.
+#[derive(Debug, Default)]
+pub(super) struct Clock {
+    samples: usize,
+    first: f64,
+    last: f64,
+    /// The first times with the lines of the file on which they stand, until the usual step is told
+    /// from them.
+    beginning: Vec<(f64, Option<usize>)>,
+    /// The usual step.
+    expected: Option<f64>,
+    /// The first step that is not the usual one.
+    bad: Option<Problem>,
+}
+
+impl Clock {
+    /// Takes the next time, s.
+    pub(super) fn push(&mut self, time: f64, line: Option<usize>) {
+        if self.samples == 0 {
+            self.first = time;
+        } else if self.expected.is_some() {
+            self.check(self.samples - 1, time - self.last, line);
+        }
+        self.samples += 1;
+        self.last = time;
+        if self.expected.is_none() {
+            self.beginning.push((time, line));
+            if self.samples > FIRST_STEPS {
+                self.settle();
+            }
+        }
+    }
+
+    /// Number of samples so far.
+    pub(super) const fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The sampling frequency (Hz), from the mean step.
+    ///
+    /// # Errors
+    /// Fewer than two samples, or the first step that is not the usual one.
+    pub(super) fn frequency(mut self, file: &str) -> Result<f64, Error> {
+        if self.expected.is_none() {
+            self.settle();
+        }
+        let problem = match self.samples {
+            0 => Some(Problem::new("the run is empty")),
+            1 => Some(Problem::new("the run has a single sample")),
+            _ => self.bad,
+        };
+        match problem {
+            Some(problem) => Err(problem.file(file).into()),
+            None => Ok((self.samples - 1) as f64 / (self.last - self.first)),
+        }
+    }
+
+    /// Tells the usual step from the beginning and checks the beginning by it.
+    fn settle(&mut self) {
+        let beginning = std::mem::take(&mut self.beginning);
+        let found: Vec<f64> = beginning
+            .windows(2)
+            .map(|pair| pair[1].0 - pair[0].0)
+            .collect();
+        let mut steps = found.clone();
+        steps.sort_by(f64::total_cmp);
+        // The median stays right when samples are missing; the mean would not.
+        let Some(expected) = steps.get(steps.len() / 2) else {
+            return;
+        };
+        self.expected = Some(*expected);
+        for (index, step) in found.into_iter().enumerate() {
+            self.check(index, step, beginning[index + 1].1);
+        }
+    }
+
+    /// Checks the step after sample `index`.
+    fn check(&mut self, index: usize, step: f64, line: Option<usize>) {
+        let expected = self.expected.unwrap_or(step);
         // Written so that a step that is not a number counts as bad.
         let uniform = expected > 0.0 && (step - expected).abs() <= STEP_TOLERANCE * expected;
-        !uniform
-    });
-    if let Some(index) = bad {
-        let mut problem = Problem::new(format!(
-            "the time is not uniform: between samples {index} and {} it steps by {:.9} s, expected {expected:.9} s",
-            index + 1,
-            found[index]
-        ))
-        .file(file)
-        .help("resample the run at a constant frequency, or cut it where samples are missing");
-        if let Some(line) = lines.and_then(|lines| lines.get(index + 1)) {
-            problem = problem.line(*line);
+        if uniform || self.bad.is_some() {
+            return;
         }
-        return Err(problem.into());
+        let problem = Problem::new(format!(
+            "the time is not uniform: between samples {index} and {} it steps by {step:.9} s, expected {expected:.9} s",
+            index + 1,
+        ))
+        .help("resample the run at a constant frequency, or cut it where samples are missing");
+        self.bad = Some(match line {
+            Some(line) => problem.line(line),
+            None => problem,
+        });
     }
-    Ok((time.len() - 1) as f64 / (last - first))
 }

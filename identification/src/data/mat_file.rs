@@ -5,7 +5,7 @@ use std::path::Path;
 use matfile::{Array, MatFile, NumericData};
 
 use super::{
-    Gain, LARGEST_NUMBER_OF_PROBLEMS, Log, Mapping, Table, display_name, missing_columns,
+    Gain, LARGEST_NUMBER_OF_PROBLEMS, Log, Mapping, display_name, log::Clock, missing_columns,
     unreadable,
 };
 use crate::error::{Error, Problem};
@@ -33,8 +33,25 @@ pub fn read_mat(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Er
             .help("save it in MATLAB with `save(..., '-v7')`, or export CSV")
     })?;
     let gains = gains(&file, &mat, mapping)?;
-    let table = read_table(file, &mat, mapping)?;
-    table.into_log(mapping, &gains, payload)
+    let columns = read_columns(&file, &mat, mapping)?;
+    let (time, columns) = columns.split_at(1);
+    let mut clock = Clock::default();
+    time.iter()
+        .flatten()
+        .for_each(|time| clock.push(*time, None));
+    let samples = clock.samples();
+    let frequency = clock.frequency(&file)?;
+    let n = mapping.positions.len();
+    let interleaved = |columns: &[Vec<f64>], scales: &[f64]| -> Vec<f64> {
+        let row = |sample: usize| {
+            let columns = columns.iter().zip(scales);
+            columns.map(move |(column, scale)| column[sample] * scale)
+        };
+        (0..samples).flat_map(row).collect()
+    };
+    let positions = interleaved(&columns[..n], &mapping.position_scale);
+    let torques = interleaved(&columns[n..], &gains);
+    Log::new(file, frequency, n, positions, torques, payload)
 }
 
 /// The gains as numbers, read from the file's scalars where the mapping names them.
@@ -78,8 +95,8 @@ fn names(mat: &MatFile) -> Vec<&str> {
     mat.arrays().iter().map(Array::name).collect()
 }
 
-/// Reads the variables that the mapping names.
-fn read_table(file: String, mat: &MatFile, mapping: &Mapping) -> Result<Table, Error> {
+/// The variables that the mapping names, all of one length: time, positions, torques.
+fn read_columns(file: &str, mat: &MatFile, mapping: &Mapping) -> Result<Vec<Vec<f64>>, Error> {
     let wanted = mapping.names();
     let mut missing: Vec<&str> = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
@@ -91,12 +108,12 @@ fn read_table(file: String, mat: &MatFile, mapping: &Mapping) -> Result<Table, E
         }
     }
     if !missing.is_empty() {
-        return Err(missing_columns(&file, &missing, &names(mat), "variable").into());
+        return Err(missing_columns(file, &missing, &names(mat), "variable").into());
     }
     let samples = columns.first().map_or(0, Vec::len);
     let mut problems = Vec::new();
     for (name, column) in wanted.iter().zip(&columns) {
-        let problem = |message: String| Problem::new(message).file(file.as_str()).column(*name);
+        let problem = |message: String| Problem::new(message).file(file).column(*name);
         if column.len() != samples {
             problems.push(problem(format!(
                 "`{name}` has {} samples, but `{}` has {samples}",
@@ -112,14 +129,7 @@ fn read_table(file: String, mat: &MatFile, mapping: &Mapping) -> Result<Table, E
     }
     problems.truncate(LARGEST_NUMBER_OF_PROBLEMS);
     Error::check(problems)?;
-    let mut columns = columns.into_iter();
-    Ok(Table {
-        lines: None,
-        time: columns.next().unwrap_or_default(),
-        positions: columns.by_ref().take(mapping.positions.len()).collect(),
-        torques: columns.collect(),
-        file,
-    })
+    Ok(columns)
 }
 
 /// A vector by its name, or a column of a matrix written `name(:,2)`.

@@ -2,7 +2,8 @@
 //! a [`Mapping`] says which columns of a file they are and what turns them into SI units.
 //!
 //! Readers for CSV with a header and MATLAB v5 `.mat` files report every missing column, every
-//! cell that is not a number (up to twenty) and the first step of a time that is not uniform.
+//! cell that is not a number (up to twenty) and the first step of a time that is not uniform. A large
+//! CSV file stays on the disk and is read block by block whenever its run is gone through.
 
 mod csv_file;
 mod log;
@@ -12,7 +13,7 @@ mod mat_file;
 use std::path::Path;
 
 pub use csv_file::read_csv;
-pub use log::Log;
+pub use log::{Log, Reader, Samples};
 pub use mapping::{Gain, Mapping};
 pub use mat_file::read_mat;
 
@@ -33,43 +34,6 @@ pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error>
         read_mat(path, mapping, payload)
     } else {
         read_csv(path, mapping, payload)
-    }
-}
-
-/// The columns of a file that the mapping names, in SI units once scaled.
-struct Table {
-    file: String,
-    /// Line of the first sample, where the file has lines.
-    lines: Option<Vec<usize>>,
-    time: Vec<f64>,
-    /// One column per actuator.
-    positions: Vec<Vec<f64>>,
-    torques: Vec<Vec<f64>>,
-}
-
-impl Table {
-    /// Scales the columns and makes them a run.
-    fn into_log(self, mapping: &Mapping, gains: &[f64], payload: bool) -> Result<Log, Error> {
-        let frequency = log::uniform_frequency(&self.file, &self.time, self.lines.as_deref())?;
-        let interleave = |columns: &[Vec<f64>], scales: &[f64]| -> Vec<f64> {
-            let mut rows = Vec::with_capacity(columns.len() * self.time.len());
-            for sample in 0..self.time.len() {
-                rows.extend(columns.iter().zip(scales).map(|(column, scale)| {
-                    column.get(sample).copied().unwrap_or(f64::NAN) * scale
-                }));
-            }
-            rows
-        };
-        let positions = interleave(&self.positions, &mapping.position_scale);
-        let torques = interleave(&self.torques, gains);
-        Log::new(
-            self.file,
-            frequency,
-            mapping.positions.len(),
-            positions,
-            torques,
-            payload,
-        )
     }
 }
 

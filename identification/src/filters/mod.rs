@@ -5,14 +5,16 @@
 //! the expanded polynomials lose digits (2e-8 at a factor of 10, 8e-4 at 50), sections do not.
 //! [`filtfilt`] runs it forwards and backwards, so that no phase is lost between positions,
 //! torques and the columns of the regressor, and the parallel decimation of section 4.1 of the
-//! paper introduces no error into the linear relation (40).
+//! paper introduces no error into the linear relation (40). Long signals pass block by block
+//! ([`ZeroPhase`], [`Decimation`]), so memory does not grow with them.
 
+mod cascade;
 mod decimation;
 mod design;
 mod differences;
 mod zero_phase;
 
-pub use decimation::{DECIMATION_ORDER, DECIMATION_PADDING, Decimator, decimate};
+pub use decimation::{DECIMATION_ORDER, DECIMATION_PADDING, Decimation, Decimator, decimate};
 pub use design::{LowPass, Section, butterworth, chebyshev1};
-pub use differences::central_differences;
-pub use zero_phase::filtfilt;
+pub(crate) use differences::central_differences;
+pub use zero_phase::{ZeroPhase, filtfilt};

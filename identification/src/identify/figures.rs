@@ -106,8 +106,8 @@ pub struct LineResidual {
     pub within_bound: f64,
     /// Frequencies of the spectrum, Hz.
     pub frequency_hz: Vec<f64>,
-    /// Power spectral density at the frequencies ((N, N m)²/Hz), Bartlett's estimate: the transform
-    /// of the tapered autocovariance.
+    /// One-sided power spectral density at the frequencies ((N, N m)²/Hz), Bartlett's estimate: the
+    /// transform of the tapered autocovariance.
     pub power: Vec<f64>,
 }
 

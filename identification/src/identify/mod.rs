@@ -6,12 +6,14 @@
 //! same motion.
 
 pub mod figures;
+mod plots;
 mod result;
 mod stages;
 pub mod verdict;
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
 use overact::Model;
 
 pub use result::{
@@ -25,35 +27,32 @@ use crate::{
     columns::ColumnSet,
     data::Log,
     error::{Error, Problem},
-    kinematics::{Motion, motion},
-    regression::{Projection, equations},
+    kinematics,
+    observation::{Observer, Seen},
+    regression::{Projection, System},
     settings::Settings,
-    validation::validate_equations,
+    validation::{Candidate, validate},
 };
 
 /// A closure residual (m, rad) above this speaks of wrong geometry or offsets.
 const LARGEST_CLOSURE_RESIDUAL: f64 = 0.01;
 
+/// Values of all runs and projections that are kept as successive equations (64 MB).
+const LARGEST_STRETCHES: usize = 1 << 23;
+
 /// What an identification is doing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Progress<'a> {
-    /// Filters a run and solves its forward kinematics: samples done, of how many.
-    Kinematics {
+    /// Finds the base parameters.
+    Base,
+    /// Goes through a run: motion, columns, decimation.
+    Run {
         /// Name of the run.
         run: &'a str,
         /// Samples done.
         done: usize,
         /// Samples of the run.
         samples: usize,
-    },
-    /// Finds the base parameters.
-    Base,
-    /// Evaluates and decimates the columns of a run.
-    Equations {
-        /// `platform`, `actuators` or `joints`.
-        model: &'static str,
-        /// Name of the run.
-        run: &'a str,
     },
     /// Estimates and eliminates parameters.
     Estimation {
@@ -64,6 +63,10 @@ pub enum Progress<'a> {
     Validation {
         /// Name of the run.
         run: &'a str,
+        /// Samples done.
+        done: usize,
+        /// Samples of the run.
+        samples: usize,
     },
 }
 
@@ -79,17 +82,25 @@ pub struct Experiment<'a> {
     pub true_values: Option<&'a BTreeMap<String, f64>>,
 }
 
-/// What all projections share: the motion of the runs, the columns and the base parameters.
+/// The data as the projections see them: their systems, the columns and the base parameters.
 #[derive(Debug, Clone)]
 pub struct Prepared {
     /// The columns of the model.
     pub columns: ColumnSet,
     /// The base parameters.
     pub base: BaseParameters,
-    /// The motion of each run.
-    pub motions: Vec<Motion>,
     /// How the payload takes part.
     pub payload: PayloadUse,
+    /// The projections.
+    pub projections: Vec<Projection>,
+    /// For each projection, its system in the base parameters, or why it has none.
+    pub systems: Vec<Result<System, Error>>,
+    /// The runs.
+    pub runs: Vec<Run>,
+    /// What is told of the runs beside their equations.
+    pub(crate) seen: Vec<Seen>,
+    /// For each run and projection, the equations of each line at the points of the plots.
+    pub(crate) points: Vec<Vec<Vec<DMatrix<f64>>>>,
 }
 
 impl Prepared {
@@ -106,20 +117,24 @@ impl Prepared {
     }
 }
 
-/// Filters the runs, computes their motion and finds the base parameters.
+/// Finds the base parameters and goes through the runs, once for all projections.
 ///
 /// # Errors
-/// Settings that are not possible, no run, runs that do not fit the robot (the problems of all runs
-/// together), a sample outside the workspace.
+/// Settings that are not possible, no run, runs that do not fit the robot or leave its workspace (the
+/// problems of all runs together), projections that are not possible. Kept actuators that are singular
+/// at a sample are an error of their system.
 pub fn prepare(
     model: &dyn Model,
     runs: &[Log],
+    projections: &[Projection],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Prepared, Error> {
-    settings.check(&model.info())?;
+    let info = model.info();
+    settings.check(&info)?;
+    check_projections(projections, model)?;
     let payload = payload_use(model, runs)?;
-    let motions = motions(model, runs, settings, progress)?;
+    check_runs(model, runs, settings)?;
     progress(Progress::Base);
     let columns = ColumnSet::new(
         model,
@@ -128,12 +143,78 @@ pub fn prepare(
         settings.seed,
     )?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
+    let observer = Observer {
+        model,
+        columns: &columns,
+        base: &base.columns,
+        projections,
+        settings,
+    };
+    let new =
+        |projection: &Projection| Ok(System::new(projection.clone(), &info, base.columns.len()));
+    let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
+    let (mut seen, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, log) in runs.iter().enumerate() {
+        let run = log.name();
+        let report = |done, samples| progress(Progress::Run { run, done, samples });
+        match observer.run(number, log, LARGEST_STRETCHES / runs.len(), &report) {
+            Ok((observed, told)) => {
+                seen.push(told);
+                points.push(add(&mut systems, observed));
+            }
+            Err(error) => problems.extend(error.problems),
+        }
+    }
+    Error::check(problems)?;
+    let runs = runs.iter().zip(&seen);
     Ok(Prepared {
+        runs: runs.map(|(log, seen)| Run::new(log, seen)).collect(),
+        projections: projections.to_vec(),
         columns,
         base,
-        motions,
         payload,
+        systems,
+        seen,
+        points,
     })
+}
+
+/// Adds what a run holds to the systems, and gives back the equations at the points of the plots.
+fn add(
+    systems: &mut [Result<System, Error>],
+    observed: Vec<Result<crate::regression::Observed, Error>>,
+) -> Vec<Vec<DMatrix<f64>>> {
+    let mut points = Vec::new();
+    for (system, observed) in systems.iter_mut().zip(observed) {
+        match (system.as_mut(), observed) {
+            (Ok(own), Ok(mut observed)) => {
+                points.push(std::mem::take(&mut observed.points));
+                own.extend(observed);
+            }
+            (Ok(_), Err(error)) => {
+                points.push(Vec::new());
+                *system = Err(error);
+            }
+            (Err(_), _) => points.push(Vec::new()),
+        }
+    }
+    points
+}
+
+/// Checks the kept actuators of all projections.
+fn check_projections(projections: &[Projection], model: &dyn Model) -> Result<(), Error> {
+    let problem = |projection: &Projection| match projection {
+        Projection::Actuators(kept) => crate::settings::check_partition(kept, &model.info()),
+        _ => None,
+    };
+    Error::check(projections.iter().filter_map(problem).collect())
+}
+
+/// Checks whether runs fit the robot and the settings, before the long work.
+fn check_runs(model: &dyn Model, runs: &[Log], settings: &Settings) -> Result<(), Error> {
+    let check = |log: &Log| kinematics::check(model, log, settings).err();
+    let errors = runs.iter().filter_map(check);
+    Error::check(errors.flat_map(|error| error.problems).collect())
 }
 
 /// Identifies a robot from the runs of an experiment and cross-validates the estimates.
@@ -147,49 +228,57 @@ pub fn identify(
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
     let info = model.info();
-    let prepared = prepare(model, experiment.runs, settings, progress)?;
     // A cross-validation run that can't be used is better known before the long work.
-    let others = motions(model, experiment.validation, settings, progress)?;
-    let mut warnings = prepared_warnings(&prepared, &others);
+    check_runs(model, experiment.validation, settings)?;
+    let projections = projections(model, settings);
+    let prepared = prepare(model, experiment.runs, &projections, settings, progress)?;
+    let mut warnings = prepared_warnings(&prepared, experiment.validation);
     let mut estimates = Vec::new();
-    let mut cross_validation = Vec::new();
-    for projection in &projections(model, settings) {
-        let outcome = estimate_projection(
-            model,
-            &prepared,
-            projection,
-            settings,
-            experiment.true_values,
-            progress,
-        );
-        let outcome = match (outcome, projection) {
-            (Err(error), Projection::Actuators(_)) => {
+    for (number, projection) in projections.iter().enumerate() {
+        let model = projection.name();
+        progress(Progress::Estimation { model });
+        match estimate_projection(&prepared, number, settings, experiment.true_values) {
+            Ok(outcome) => {
+                warnings.extend(outcome.warnings);
+                estimates.extend([outcome.base, outcome.essential].map(|one| (number, one)));
+            }
+            Err(error) if matches!(projection, Projection::Actuators(_)) => {
                 warnings.push(format!("case 2 is left out: {error}"));
-                continue;
             }
-            (outcome, _) => outcome?,
-        };
-        warnings.extend(outcome.warnings);
-        let pair = [outcome.base, outcome.essential];
-        for other in &others {
-            progress(Progress::Validation { run: &other.run });
-            match cross_validate(model, &prepared, projection, other, &pair, settings) {
-                Ok(validations) => cross_validation.extend(validations),
-                Err(error) => warnings.push(format!("no cross-validation: {error}")),
-            }
+            Err(error) => return Err(error),
         }
-        estimates.extend(pair);
     }
+    let held_out = cross_validate(
+        model,
+        &prepared,
+        experiment.validation,
+        &estimates,
+        settings,
+        progress,
+    )?;
+    warnings.extend(held_out.warnings);
+    let cross_validation = held_out.validations;
+    let figures = plots::figures(
+        model,
+        &prepared,
+        &estimates,
+        &cross_validation,
+        held_out.motions,
+        settings,
+    )?;
     Ok(Identification {
         robot: info.name.to_owned(),
-        runs: prepared.motions.iter().map(Run::new).collect(),
         base_parameters: BaseParameter::all(
             &prepared.columns,
             &prepared.base,
             experiment.true_values,
         ),
         without_effect: prepared.without_effect(),
-        estimates,
+        runs: prepared.runs,
+        estimates: estimates
+            .into_iter()
+            .map(|(_, estimate)| estimate)
+            .collect(),
         cross_validation,
         warnings,
         findings: Vec::new(),
@@ -197,7 +286,7 @@ pub fn identify(
         thresholds: verdict::Thresholds::default(),
         tracking: Vec::new(),
         settings: settings.clone(),
-        figures: figures::Figures::default(),
+        figures,
     })
 }
 
@@ -212,49 +301,75 @@ fn projections(model: &dyn Model, settings: &Settings) -> Vec<Projection> {
     }
 }
 
-/// Compares one run with the predictions of several estimates of a projection.
+/// What the runs of the cross-validation tell.
+#[derive(Default)]
+struct HeldOut {
+    validations: Vec<CrossValidation>,
+    motions: Vec<figures::RunFigures>,
+    warnings: Vec<String>,
+}
+
+/// Compares the runs of the cross-validation with the predictions of all estimates, of which each comes
+/// with the number of its projection.
 fn cross_validate(
     model: &dyn Model,
     prepared: &Prepared,
-    projection: &Projection,
-    motion: &Motion,
-    estimates: &[Estimate],
-    settings: &Settings,
-) -> Result<Vec<CrossValidation>, Error> {
-    let columns = &prepared.columns;
-    let equations = equations(model, columns, projection, motion, settings)?;
-    estimates
-        .iter()
-        .map(|estimate| {
-            let (selected, values) = (estimate.columns(), estimate.values());
-            let parameters = (selected.as_slice(), values.as_slice());
-            validate_equations(
-                model, columns, projection, motion, &equations, parameters, settings,
-            )
-            .map(|validation| CrossValidation::new(estimate, motion.payload, validation))
-        })
-        .collect()
-}
-
-/// The motion of several runs; the problems of all of them are collected.
-fn motions(
-    model: &dyn Model,
     runs: &[Log],
+    estimates: &[(usize, Estimate)],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
-) -> Result<Vec<Motion>, Error> {
-    let mut motions = Vec::new();
-    let mut problems = Vec::new();
+) -> Result<HeldOut, Error> {
+    let observer = Observer {
+        model,
+        columns: &prepared.columns,
+        base: &prepared.base.columns,
+        projections: &prepared.projections,
+        settings,
+    };
+    let parameters: Vec<(Vec<usize>, Vec<f64>)> = estimates
+        .iter()
+        .map(|(_, estimate)| (estimate.columns(), estimate.values()))
+        .collect();
+    let candidates: Vec<Candidate<'_>> = estimates
+        .iter()
+        .zip(&parameters)
+        .map(|((projection, _), (selected, values))| Candidate {
+            projection: *projection,
+            selected,
+            values,
+        })
+        .collect();
+    let mut held_out = HeldOut::default();
+    let (mut all, mut problems) = (Vec::new(), Vec::new());
     for log in runs {
         let run = log.name();
-        let report = |done, samples| progress(Progress::Kinematics { run, done, samples });
-        match motion(model, log, settings, &report) {
-            Ok(motion) => motions.push(motion),
+        let report = |done, samples| progress(Progress::Validation { run, done, samples });
+        match validate(&observer, log, &candidates, &report) {
+            Ok((validations, motion)) => {
+                all.push((log.payload(), validations));
+                held_out.motions.push(motion);
+            }
             Err(error) => problems.extend(error.problems),
         }
     }
     Error::check(problems)?;
-    Ok(motions)
+    // In the order of the estimates, each on all runs.
+    for (index, (_, estimate)) in estimates.iter().enumerate() {
+        for (payload, validations) in &all {
+            match &validations[index] {
+                Ok(validation) => {
+                    let validation = CrossValidation::new(estimate, *payload, validation.clone());
+                    held_out.validations.push(validation);
+                }
+                Err(error) if estimate.stage == Stage::Base => {
+                    let warning = format!("no cross-validation: {error}");
+                    held_out.warnings.push(warning);
+                }
+                Err(_) => {}
+            }
+        }
+    }
+    Ok(held_out)
 }
 
 /// How the payload takes part in the runs.
@@ -289,32 +404,32 @@ fn payload_use(model: &dyn Model, runs: &[Log]) -> Result<PayloadUse, Error> {
 }
 
 /// What the user should know before any estimate.
-fn prepared_warnings(prepared: &Prepared, others: &[Motion]) -> Vec<String> {
+fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<String> {
     let mut warnings = Vec::new();
     if prepared.payload == PayloadUse::Regrouped {
         warnings.push(String::from(
             "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
         ));
     }
-    for motion in prepared.motions.iter().chain(others) {
-        if motion.closure_residual > LARGEST_CLOSURE_RESIDUAL {
+    for run in &prepared.runs {
+        if run.closure_residual > LARGEST_CLOSURE_RESIDUAL {
             warnings.push(format!(
                 "{}: the actuator positions miss the closure of the loops by up to {:.3} m or rad; check the geometry and the offsets of the encoders",
-                motion.run, motion.closure_residual
+                run.name, run.closure_residual
             ));
         }
     }
     for other in others {
         let known = match prepared.payload {
-            PayloadUse::Absent => !other.payload,
-            PayloadUse::Regrouped => other.payload,
+            PayloadUse::Absent => !other.payload(),
+            PayloadUse::Regrouped => other.payload(),
             PayloadUse::Separate => true,
         };
         if !known {
             warnings.push(format!(
                 "{}: the cross-validation run {} the payload, unlike the runs identified from",
-                other.run,
-                if other.payload {
+                other.name(),
+                if other.payload() {
                     "carries"
                 } else {
                     "does not carry"

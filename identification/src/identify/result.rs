@@ -15,9 +15,10 @@ use serde::Serialize;
 use crate::{
     base::BaseParameters,
     columns::ColumnSet,
+    data::Log,
     essential::Removal,
     estimate::LineError,
-    kinematics::Motion,
+    observation::Seen,
     regression::PartitionCondition,
     settings::Settings,
     validation::{Series, TorqueComparison, Validation},
@@ -78,14 +79,13 @@ pub struct Run {
 
 impl Run {
     /// What is told of a run.
-    #[must_use]
-    pub fn new(motion: &Motion) -> Self {
+    pub(super) fn new(log: &Log, seen: &Seen) -> Self {
         Self {
-            name: motion.run.clone(),
-            samples: motion.samples,
-            sampling_frequency: motion.sampling_frequency,
-            payload: motion.payload,
-            closure_residual: motion.closure_residual,
+            name: log.name().to_owned(),
+            samples: seen.samples,
+            sampling_frequency: log.sampling_frequency(),
+            payload: log.payload(),
+            closure_residual: seen.closure_residual,
         }
     }
 }
@@ -213,7 +213,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Columns of the parameters.
+    /// Places of the parameters among the base parameters.
     #[must_use]
     pub fn columns(&self) -> Vec<usize> {
         self.parameters

@@ -2,19 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use overact::Model;
-
 use super::{
-    Prepared, Progress,
+    Prepared,
     result::{Estimate, ParameterEstimate, Stage},
 };
 use crate::{
+    correlation::Noise,
     elimination::eliminate,
     error::{Error, Problem},
     essential::{Removal, essential},
     estimate::{DATA_RANK_TOLERANCE, Estimation, estimate},
     factor::Factor,
-    regression::{Projection, System, system},
+    regression::{Projection, System},
     settings::Settings,
 };
 
@@ -35,55 +34,47 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
-/// Estimates base and essential parameters of one projection from prepared runs.
+/// Estimates base and essential parameters of one of the prepared projections.
 ///
 /// # Errors
-/// As [`system`](crate::regression::system), or data that determine no parameter.
+/// A projection that is singular on a run, or data that determine no parameter.
 pub fn estimate_projection(
-    model: &dyn Model,
     prepared: &Prepared,
-    projection: &Projection,
+    projection: usize,
     settings: &Settings,
     true_values: Option<&BTreeMap<String, f64>>,
-    progress: &dyn Fn(Progress<'_>),
 ) -> Result<Outcome, Error> {
-    let label = projection.name();
-    let report = |run: usize| {
-        let run = prepared
-            .motions
-            .get(run)
-            .map_or("", |motion| motion.run.as_str());
-        progress(Progress::Equations { model: label, run });
-    };
-    let system = system(
-        model,
-        &prepared.columns,
-        projection,
-        &prepared.motions,
-        settings,
-        &report,
-    )?;
-    progress(Progress::Estimation { model: label });
+    let unknown = || Error::from(Problem::new("the projection was not prepared"));
+    let system = prepared.systems.get(projection).ok_or_else(unknown)?;
+    let system = system.as_ref().map_err(Clone::clone)?;
     let mut warnings = Vec::new();
-    let (selected, names) = on_data(prepared, &system, &mut warnings)?;
-    let base = estimate(&system, &selected, settings)?;
-    let rest = essential(&system, &selected, &names, &base, settings)?;
-    warnings.extend(quality_warnings(&system, &base, &rest.removals));
+    let (selected, names) = on_data(prepared, system, &mut warnings)?;
+    let base = estimate(system, &selected, settings)?;
+    let noise = Noise::new(system, &selected, &base);
+    let rest = essential(system, &selected, &names, &base, settings)?;
+    warnings.extend(quality_warnings(system, &base, &rest.removals));
+    let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
     let context = Context {
         prepared,
-        system: &system,
+        system,
         truth: truth(prepared, true_values),
-        kept_actuators: match projection {
+        kept_actuators: match system.projection {
             Projection::Platform => Vec::new(),
             _ => system.line_names.clone(),
         },
         weighted: settings.weighted,
     };
     Ok(Outcome {
-        base: context.estimate(Stage::Base, base, &selected, &names, (Vec::new(), None)),
+        base: context.estimate(
+            Stage::Base,
+            (base, noise),
+            &selected,
+            &names,
+            (Vec::new(), None),
+        ),
         essential: context.estimate(
             Stage::Essential,
-            rest.estimation,
+            (rest.estimation, rest_noise),
             &rest.selected,
             &rest.names,
             (rest.removals, Some(rest.stop)),
@@ -92,16 +83,16 @@ pub fn estimate_projection(
     })
 }
 
-/// True values of the base parameters by column, where they are known.
+/// True values of the base parameters by place, where they are known.
 fn truth(prepared: &Prepared, true_values: Option<&BTreeMap<String, f64>>) -> BTreeMap<usize, f64> {
     let Some(values) = true_values else {
         return BTreeMap::new();
     };
     let base = &prepared.base;
     let regrouped = base.regrouped(&prepared.columns, values);
-    let known = base.columns.iter().zip(regrouped);
+    let known = regrouped.into_iter().enumerate();
     known
-        .filter_map(|(&column, value)| value.map(|value| (column, value)))
+        .filter_map(|(place, value)| value.map(|value| (place, value)))
         .collect()
 }
 
@@ -119,7 +110,7 @@ impl Context<'_> {
     fn estimate(
         &self,
         stage: Stage,
-        estimation: Estimation,
+        (estimation, noise): (Estimation, Option<Noise>),
         selected: &[usize],
         names: &[String],
         (removals, stop): (Vec<Removal>, Option<String>),
@@ -129,7 +120,7 @@ impl Context<'_> {
             kept_actuators: self.kept_actuators.clone(),
             stage,
             weighted: self.weighted,
-            parameters: parameters(self.prepared, &estimation, selected, names, &self.truth),
+            parameters: self.parameters((&estimation, noise.as_ref()), selected, names),
             residual_norm: estimation.residual_norm,
             relative_error_percent: estimation.relative_error_percent,
             condition_number: estimation.condition_number,
@@ -140,6 +131,46 @@ impl Context<'_> {
             removals,
             stop,
         }
+    }
+
+    /// Joins estimates, names and true values.
+    fn parameters(
+        &self,
+        (estimation, noise): (&Estimation, Option<&Noise>),
+        selected: &[usize],
+        names: &[String],
+    ) -> Vec<ParameterEstimate> {
+        let prepared = self.prepared;
+        let correlated = noise.map_or_else(
+            || estimation.standard_deviations.clone(),
+            |noise| noise.deviations(selected, estimation),
+        );
+        let parameter = |(place, (&column, name)): (usize, (&usize, &String))| {
+            let value = estimation.values[place];
+            let true_value = self.truth.get(&column).copied();
+            let standard = prepared.base.columns.get(column);
+            let standard = standard.and_then(|&k| prepared.columns.as_slice().get(k));
+            ParameterEstimate {
+                name: name.clone(),
+                unit: standard.map_or("", |column| column.unit).to_owned(),
+                column,
+                value,
+                standard_deviation: estimation.standard_deviations[place],
+                relative_standard_deviation_percent: estimation
+                    .relative_standard_deviations_percent[place],
+                correlated_standard_deviation: correlated[place],
+                true_value,
+                error_percent: true_value
+                    .filter(|truth| *truth != 0.0)
+                    .map(|truth| 100.0 * (value - truth) / truth.abs()),
+            }
+        };
+        selected
+            .iter()
+            .zip(names)
+            .enumerate()
+            .map(parameter)
+            .collect()
     }
 }
 
@@ -152,14 +183,9 @@ fn on_data(
     let base = &prepared.base;
     let ones = vec![1.0; system.lines.len()];
     let all = Factor::merged(&system.lines, &ones);
-    let found = eliminate(all.matrix(), &base.columns, DATA_RANK_TOLERANCE);
-    let name = |column: usize| -> &str {
-        base.columns
-            .iter()
-            .position(|kept| *kept == column)
-            .and_then(|place| base.names.get(place))
-            .map_or("", String::as_str)
-    };
+    let places: Vec<usize> = (0..base.columns.len()).collect();
+    let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
+    let name = |place: usize| base.names.get(place).map_or("", String::as_str);
     let label = system.projection.name();
     for &column in &found.zero {
         warnings.push(format!(
@@ -191,48 +217,6 @@ fn on_data(
         .map(|&column| name(column).to_owned())
         .collect();
     Ok((found.kept, names))
-}
-
-/// Joins estimates, names and true values.
-fn parameters(
-    prepared: &Prepared,
-    estimation: &Estimation,
-    selected: &[usize],
-    names: &[String],
-    truth: &BTreeMap<usize, f64>,
-) -> Vec<ParameterEstimate> {
-    let deviations = estimation
-        .standard_deviations
-        .iter()
-        .zip(&estimation.relative_standard_deviations_percent);
-    selected
-        .iter()
-        .zip(names)
-        .zip(estimation.values.iter().zip(deviations))
-        .map(
-            |((&column, name), (&value, (&standard_deviation, &relative)))| {
-                let true_value = truth.get(&column).copied();
-                let unit = prepared
-                    .columns
-                    .as_slice()
-                    .get(column)
-                    .map_or("", |column| column.unit);
-                ParameterEstimate {
-                    name: name.clone(),
-                    unit: unit.to_owned(),
-                    column,
-                    value,
-                    standard_deviation,
-                    relative_standard_deviation_percent: relative,
-                    correlated_standard_deviation: standard_deviation,
-                    true_value,
-                    error_percent: true_value
-                        .filter(|truth| *truth != 0.0)
-                        .map(|truth| 100.0 * (value - truth) / truth.abs()),
-                }
-            },
-        )
-        .collect()
 }
 
 /// What is wrong with a system, its estimate or its elimination.

@@ -144,7 +144,7 @@ pub fn estimate(estimate: &Estimate) -> String {
     if truth {
         header.push("true value");
     }
-    header.extend(["estimate", "% sigma"]);
+    header.extend(["estimate", "% sigma", "% correlated"]);
     if truth {
         header.push("error %");
     }
@@ -160,6 +160,10 @@ pub fn estimate(estimate: &Estimate) -> String {
         row.push(significant(parameter.value, 7));
         row.push(significant(
             parameter.relative_standard_deviation_percent,
+            4,
+        ));
+        row.push(significant(
+            100.0 * parameter.correlated_standard_deviation / parameter.value.abs(),
             4,
         ));
         if truth {

@@ -1,0 +1,165 @@
+//! The discrete Fourier transform of real signals, padded with zeros to a power of two.
+
+use std::f64::consts::PI;
+
+/// A transform of one length, planned once.
+#[derive(Debug, Clone)]
+pub(crate) struct Fourier {
+    size: usize,
+    /// cos and sin of 2 π k/size for k below size/2.
+    turns: Vec<(f64, f64)>,
+}
+
+impl Fourier {
+    /// A transform that signals of `samples` values fit into twice, so that products of spectra are
+    /// correlations without wrapping round.
+    pub(crate) fn for_correlation(samples: usize) -> Self {
+        let size = (2 * samples.max(1)).next_power_of_two();
+        let turn = |k: usize| {
+            let angle = 2.0 * PI * k as f64 / size as f64;
+            (angle.cos(), angle.sin())
+        };
+        Self {
+            size,
+            turns: (0..size / 2).map(turn).collect(),
+        }
+    }
+
+    /// Length of the padded signals.
+    pub(crate) const fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Number of frequencies from 0 to half the sampling frequency.
+    pub(crate) const fn frequencies(&self) -> usize {
+        self.size / 2 + 1
+    }
+
+    /// Real and imaginary parts of the spectra of two signals at all frequencies, Σ x_k exp(-i ω k).
+    pub(crate) fn pair(&self, first: &[f64], second: &[f64]) -> [Spectrum; 2] {
+        let mut real = vec![0.0; self.size];
+        let mut imaginary = vec![0.0; self.size];
+        real[..first.len()].copy_from_slice(first);
+        imaginary[..second.len()].copy_from_slice(second);
+        self.transform(&mut real, &mut imaginary);
+        // The signals are the real and the imaginary part: even and odd parts of the spectrum.
+        let mut spectra = [Spectrum::default(), Spectrum::default()];
+        for k in 0..self.frequencies() {
+            let mirrored = (self.size - k) % self.size;
+            let (a, b) = (real[k], imaginary[k]);
+            let (c, d) = (real[mirrored], imaginary[mirrored]);
+            spectra[0].real.push(0.5 * (a + c));
+            spectra[0].imaginary.push(0.5 * (b - d));
+            spectra[1].real.push(0.5 * (b + d));
+            spectra[1].imaginary.push(0.5 * (c - a));
+        }
+        spectra
+    }
+
+    /// The spectrum of one signal.
+    pub(crate) fn single(&self, signal: &[f64]) -> Spectrum {
+        let [spectrum, _] = self.pair(signal, &[]);
+        spectrum
+    }
+
+    /// Sums Σ_k x_k x_(k+l) of a signal with the given squared magnitudes, for lags l below `lags`.
+    pub(crate) fn correlations(&self, squares: &[f64], lags: usize) -> Vec<f64> {
+        let mut real = vec![0.0; self.size];
+        let mut imaginary = vec![0.0; self.size];
+        for (k, square) in squares.iter().enumerate().take(self.frequencies()) {
+            real[k] = *square;
+            real[(self.size - k) % self.size] = *square;
+        }
+        // Even in frequency: forwards and backwards are the same.
+        self.transform(&mut real, &mut imaginary);
+        real.truncate(lags);
+        real.iter().map(|sum| sum / self.size as f64).collect()
+    }
+
+    /// The transform in place, radix two.
+    fn transform(&self, real: &mut [f64], imaginary: &mut [f64]) {
+        let bits = self.size.trailing_zeros();
+        for k in 0..self.size {
+            let mirrored = k.reverse_bits() >> (usize::BITS - bits);
+            if k < mirrored {
+                real.swap(k, mirrored);
+                imaginary.swap(k, mirrored);
+            }
+        }
+        let mut half = 1;
+        while half < self.size {
+            let stride = self.size / (2 * half);
+            for start in (0..self.size).step_by(2 * half) {
+                for k in 0..half {
+                    let (cosine, sine) = self.turns[k * stride];
+                    let (i, j) = (start + k, start + k + half);
+                    let a = cosine * real[j] + sine * imaginary[j];
+                    let b = cosine * imaginary[j] - sine * real[j];
+                    (real[j], imaginary[j]) = (real[i] - a, imaginary[i] - b);
+                    real[i] += a;
+                    imaginary[i] += b;
+                }
+            }
+            half *= 2;
+        }
+    }
+}
+
+/// The spectrum of a real signal from frequency 0 to half the sampling frequency.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Spectrum {
+    pub(crate) real: Vec<f64>,
+    pub(crate) imaginary: Vec<f64>,
+}
+
+impl Spectrum {
+    /// Squared magnitudes.
+    pub(crate) fn squares(&self) -> impl Iterator<Item = f64> {
+        let parts = self.real.iter().zip(&self.imaginary);
+        parts.map(|(a, b)| a * a + b * b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fourier, Spectrum};
+    use std::f64::consts::PI;
+
+    #[test]
+    fn spectra_and_correlations_are_those_of_the_definitions() {
+        let x: Vec<f64> = (0..13).map(|k| (f64::from(k * k) * 0.7).sin()).collect();
+        let y: Vec<f64> = (0..11).map(|k| (f64::from(k) * 1.3).cos()).collect();
+        let fourier = Fourier::for_correlation(x.len());
+        assert_eq!((fourier.size(), fourier.frequencies()), (32, 17));
+        let direct = |signal: &[f64]| {
+            let sum = |k: usize, part: fn(f64) -> f64| -> f64 {
+                let angle = |i: usize| 2.0 * PI * (i * k) as f64 / 32.0;
+                signal
+                    .iter()
+                    .enumerate()
+                    .map(|(i, x)| x * part(angle(i)))
+                    .sum()
+            };
+            Spectrum {
+                real: (0..17).map(|k| sum(k, f64::cos)).collect(),
+                imaginary: (0..17).map(|k| -sum(k, f64::sin)).collect(),
+            }
+        };
+        let close = |a: &[f64], b: &[f64]| {
+            assert_eq!(a.len(), b.len());
+            assert!(
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-13),
+                "{a:?} {b:?}"
+            );
+        };
+        for (found, expected) in fourier.pair(&x, &y).iter().zip([direct(&x), direct(&y)]) {
+            close(&found.real, &expected.real);
+            close(&found.imaginary, &expected.imaginary);
+        }
+        let squares: Vec<f64> = fourier.single(&x).squares().collect();
+        let sums: Vec<f64> = (0..5)
+            .map(|lag| x.iter().zip(&x[lag..]).map(|(a, b)| a * b).sum())
+            .collect();
+        close(&fourier.correlations(&squares, 5), &sums);
+    }
+}

@@ -1,0 +1,196 @@
+//! What is plotted of an identification, from what the pass over the runs has kept.
+
+use overact::{Function, Model};
+
+use super::{
+    Prepared,
+    figures::{
+        Figures, LineResidual, PredictionFigures, ResidualFigures, ResidualSeries, RunFigures,
+    },
+    result::{CrossValidation, Estimate},
+};
+use crate::{
+    conditioning::least_norm,
+    correlation::line_residual,
+    error::Error,
+    regression::{Projection, System},
+    settings::Settings,
+    validation::{Series, platform_input, product},
+};
+
+/// The plots of an identification. Each estimate comes with the number of its projection; `others` are
+/// the motions of the held-out runs.
+///
+/// # Errors
+/// A pose at which the model has no value; it has had one before.
+pub(super) fn figures(
+    model: &dyn Model,
+    prepared: &Prepared,
+    estimates: &[(usize, Estimate)],
+    cross_validation: &[CrossValidation],
+    others: Vec<RunFigures>,
+    settings: &Settings,
+) -> Result<Figures, Error> {
+    let own = prepared.seen.iter().map(|seen| RunFigures {
+        identified: true,
+        ..seen.figures.clone()
+    });
+    let mut predictions = Vec::new();
+    for (projection, estimate) in estimates {
+        for run in 0..prepared.seen.len() {
+            predictions.push(prediction(model, prepared, run, *projection, estimate)?);
+        }
+    }
+    predictions.extend(cross_validation.iter().map(|one| PredictionFigures {
+        run: one.run.clone(),
+        identified: false,
+        model: one.model,
+        stage: one.stage,
+        lines: one.line_series.clone(),
+        torques: one.torque_series.clone(),
+    }));
+    let residuals = estimates.iter().filter_map(|(projection, estimate)| {
+        let system = prepared.systems[*projection].as_ref().ok()?;
+        Some(residual(prepared, *projection, system, estimate, settings))
+    });
+    let residuals = residuals.collect();
+    Ok(Figures {
+        runs: own.chain(others).collect(),
+        predictions,
+        residuals,
+    })
+}
+
+/// The residual of an estimate, over time and as a whole.
+fn residual(
+    prepared: &Prepared,
+    projection: usize,
+    system: &System,
+    estimate: &Estimate,
+    settings: &Settings,
+) -> ResidualFigures {
+    let frequency = prepared
+        .runs
+        .first()
+        .map_or(1.0, |run| run.sampling_frequency);
+    let interval = settings.decimation as f64 / frequency;
+    let (selected, values) = (estimate.columns(), estimate.values());
+    let line = |line: usize| {
+        let runs = prepared
+            .seen
+            .iter()
+            .zip(&prepared.points)
+            .map(|(seen, points)| {
+                let rows = &points[projection][line];
+                let mut residual = rows.column(rows.ncols() - 1).clone_owned();
+                for (&column, value) in selected.iter().zip(&values) {
+                    residual.axpy(-value, &rows.column(column), 1.0);
+                }
+                ResidualSeries {
+                    run: seen.figures.run.clone(),
+                    time: seen.figures.time.clone(),
+                    residual: residual.iter().copied().collect(),
+                }
+            });
+        LineResidual {
+            runs: runs.collect(),
+            ..line_residual(system, line, &selected, &values, interval)
+        }
+    };
+    ResidualFigures {
+        model: estimate.model,
+        stage: estimate.stage,
+        lines: (0..system.lines.len()).map(line).collect(),
+    }
+}
+
+/// Measured and predicted inputs of a run identified from, at the points of the plots. Torques are
+/// predicted from the decimated Γ, which the slow change of J_p^inv allows.
+fn prediction(
+    model: &dyn Model,
+    prepared: &Prepared,
+    run: usize,
+    projection: usize,
+    estimate: &Estimate,
+) -> Result<PredictionFigures, Error> {
+    let info = model.info();
+    let (n, r) = (info.sizes.actuators, info.sizes.dof);
+    let seen = &prepared.seen[run];
+    let time = &seen.figures.time;
+    let names = prepared.projections[projection].line_names(&info);
+    let (selected, values) = (estimate.columns(), estimate.values());
+    let lines: Vec<Series> = prepared.points[run][projection]
+        .iter()
+        .zip(names)
+        .map(|(rows, name)| {
+            let predicted = |row: usize| -> f64 {
+                let terms = selected.iter().zip(&values);
+                terms
+                    .map(|(&column, value)| rows[(row, column)] * value)
+                    .sum()
+            };
+            Series {
+                name,
+                time: time.clone(),
+                measured: rows.column(rows.ncols() - 1).iter().copied().collect(),
+                predicted: (0..rows.nrows()).map(predicted).collect(),
+            }
+        })
+        .collect();
+    let poses: Vec<f64> = (0..time.len())
+        .flat_map(|point| seen.figures.pose.iter().map(move |series| series[point]))
+        .collect();
+    let mut jacobians = vec![0.0; time.len() * n * r];
+    model
+        .evaluate(Function::InverseJacobian, &[&poses], &mut jacobians)
+        .map_err(|error| crate::error::Problem::new(error.to_string()))?;
+    let mut torques: Vec<Series> = info
+        .actuators
+        .iter()
+        .map(|name| Series {
+            name: (*name).to_owned(),
+            time: time.clone(),
+            ..Series::default()
+        })
+        .collect();
+    let points = jacobians
+        .chunks_exact(n * r)
+        .zip(seen.torques.chunks_exact(n));
+    for (point, (jacobian, measured)) in points.enumerate() {
+        let inputs: Vec<f64> = lines.iter().map(|line| line.predicted[point]).collect();
+        let predicted = distributed(&prepared.projections[projection], model, jacobian, &inputs);
+        for (series, (measured, predicted)) in
+            torques.iter_mut().zip(measured.iter().zip(predicted))
+        {
+            series.measured.push(*measured);
+            series.predicted.push(predicted);
+        }
+    }
+    Ok(PredictionFigures {
+        run: seen.figures.run.clone(),
+        identified: true,
+        model: estimate.model,
+        stage: estimate.stage,
+        lines,
+        torques,
+    })
+}
+
+/// The torques of all actuators, of least norm where there is a choice, for predicted inputs Γ.
+fn distributed(
+    projection: &Projection,
+    model: &dyn Model,
+    jacobian: &[f64],
+    inputs: &[f64],
+) -> Vec<f64> {
+    if *projection == Projection::Joints {
+        return inputs.to_vec();
+    }
+    let info = model.info();
+    let gamma = platform_input(projection, &info, jacobian, inputs);
+    let mut torques = vec![0.0; info.sizes.actuators];
+    if let Some(distribution) = least_norm(jacobian, info.sizes.dof) {
+        product(&distribution, &gamma, &mut torques);
+    }
+    torques
+}

@@ -1,0 +1,296 @@
+//! From measured actuator positions to the platform's motion, block by block.
+//!
+//! Positions pass a zero-phase Butterworth low-pass; velocities and accelerations are central
+//! differences. The pose x is the least-squares forward kinematics of all n actuators, sample after
+//! sample from the previous one, so that the assembly mode is that of the home pose. The twist v
+//! and its derivative follow from eqs. (21) and (24). A robot without a loop is the same: its pose
+//! are its joint positions.
+
+mod forward;
+mod stream;
+
+use overact::{Function, Model, math::wrap_angle};
+
+use crate::{
+    blocks::evaluate,
+    data::Log,
+    error::{Error, Problem},
+    settings::Settings,
+};
+
+use forward::Forward;
+use stream::{Derivatives, Stream};
+
+/// The motion of the platform in some successive samples of a run and the torques that belong to
+/// them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Name of the run.
+    pub run: String,
+    /// Whether the platform carried the payload.
+    pub payload: bool,
+    /// f_m, Hz.
+    pub sampling_frequency: f64,
+    /// Number of the first sample in the log.
+    pub first_sample: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// Poses x, samples x pose coordinates (m, rad).
+    pub pose: Vec<f64>,
+    /// Twist coordinates v, samples x r (m/s, rad/s).
+    pub twist: Vec<f64>,
+    /// Their derivatives, samples x r (m/s², rad/s²).
+    pub acceleration: Vec<f64>,
+    /// Torques, samples x n (N, N m), unfiltered.
+    pub torques: Vec<f64>,
+    /// Largest distance of a filtered actuator position from the one that the pose asks for (m,
+    /// rad): zero without redundancy, else the quality of the geometry and the encoders' offsets.
+    pub closure_residual: f64,
+}
+
+impl Motion {
+    /// Time of a sample of the motion, s from the start of the log.
+    #[must_use]
+    pub fn time(&self, sample: usize) -> f64 {
+        (self.first_sample + sample) as f64 / self.sampling_frequency
+    }
+
+    /// The problem of a model that has no value at a sample of the motion.
+    pub(crate) fn outside(&self, sample: usize, error: overact::Error) -> Problem {
+        outside(
+            &self.run,
+            self.first_sample + sample,
+            self.sampling_frequency,
+            error,
+        )
+    }
+
+    /// Appends the samples that follow.
+    fn append(&mut self, next: Self) {
+        self.samples += next.samples;
+        self.pose.extend(next.pose);
+        self.twist.extend(next.twist);
+        self.acceleration.extend(next.acceleration);
+        self.torques.extend(next.torques);
+        self.closure_residual = self.closure_residual.max(next.closure_residual);
+    }
+}
+
+/// A sample of a log at which the model has no value.
+fn outside(run: &str, sample: usize, frequency: f64, error: overact::Error) -> Problem {
+    Problem::new(format!(
+        "sample {sample} (t = {:.4} s) is outside the workspace: {error}",
+        sample as f64 / frequency
+    ))
+    .file(run)
+    .help("check the units, signs and offsets of the positions, the geometry and the home pose")
+}
+
+/// The motion of a run without the samples that the settings drop, in one piece. `progress` is told
+/// how many samples are done, of how many. A long run is better gone through with [`Motions`].
+///
+/// # Errors
+/// As [`Motions::new`] and [`Motions::next`].
+pub fn motion(
+    model: &dyn Model,
+    log: &Log,
+    settings: &Settings,
+    progress: &dyn Fn(usize, usize),
+) -> Result<Motion, Error> {
+    let mut motions = Motions::new(model, log, settings)?;
+    let mut whole = motions.empty();
+    while let Some(block) = motions.next()? {
+        progress(motions.done(), log.samples());
+        whole.append(block);
+    }
+    progress(log.samples(), log.samples());
+    Ok(whole)
+}
+
+/// The motion of a run, block by block, without the samples that the settings drop.
+pub struct Motions<'a> {
+    model: &'a dyn Model,
+    log: &'a Log,
+    stream: Stream<'a>,
+    forward: Forward<'a>,
+    /// Samples that are kept.
+    kept: std::ops::Range<usize>,
+}
+
+impl<'a> Motions<'a> {
+    /// Starts with the first sample.
+    ///
+    /// # Errors
+    /// A run of another number of actuators or of too few samples, a cutoff above the Nyquist
+    /// frequency, a file that can't be read.
+    pub fn new(model: &'a dyn Model, log: &'a Log, settings: &Settings) -> Result<Self, Error> {
+        check(model, log, settings)?;
+        Ok(Self {
+            model,
+            log,
+            stream: Stream::new(log, settings)?,
+            forward: Forward::new(model, log),
+            kept: settings.skip_start..log.samples() - settings.skip_end,
+        })
+    }
+
+    /// Number of samples that are kept in all.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Number of samples of the log that are done.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        self.stream.done()
+    }
+
+    /// A motion without samples, to which blocks can be appended.
+    fn empty(&self) -> Motion {
+        Motion {
+            run: self.log.name().to_owned(),
+            payload: self.log.payload(),
+            sampling_frequency: self.log.sampling_frequency(),
+            first_sample: self.kept.start,
+            samples: 0,
+            pose: Vec::new(),
+            twist: Vec::new(),
+            acceleration: Vec::new(),
+            torques: Vec::new(),
+            closure_residual: 0.0,
+        }
+    }
+
+    /// The next block, or `None` at the end.
+    ///
+    /// # Errors
+    /// A sample outside the workspace, or a file that can't be read any more.
+    #[expect(clippy::should_implement_trait, reason = "an iterator has no errors")]
+    pub fn next(&mut self) -> Result<Option<Motion>, Error> {
+        while let Some(block) = self.stream.next()? {
+            let poses = self.forward.poses(block.first, &block.positions)?;
+            let start = self
+                .kept
+                .start
+                .clamp(block.first, block.first + block.samples);
+            let end = self
+                .kept
+                .end
+                .clamp(block.first, block.first + block.samples);
+            if start < end {
+                return self.completed(&block, poses, start..end).map(Some);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The motion of the samples `kept` of a block.
+    fn completed(
+        &self,
+        block: &Derivatives,
+        poses: Vec<f64>,
+        kept: std::ops::Range<usize>,
+    ) -> Result<Motion, Error> {
+        let info = self.model.info();
+        let (n, samples) = (self.log.actuators(), kept.len());
+        let first = kept.start - block.first;
+        let keep = |values: &[f64], width: usize| {
+            values[first * width..(first + samples) * width].to_vec()
+        };
+        let pose = if samples == block.samples {
+            poses
+        } else {
+            keep(&poses, info.sizes.pose)
+        };
+        let at = |error: overact::SampleError| -> Error {
+            let sample = kept.start + error.sample;
+            let frequency = self.log.sampling_frequency();
+            outside(self.log.name(), sample, frequency, error.error).into()
+        };
+        let velocities = keep(&block.velocities, n);
+        let accelerations = keep(&block.accelerations, n);
+        let inputs: [&[f64]; 2] = [&pose, &velocities];
+        let twist =
+            evaluate(self.model, Function::TwistFromActuators, &inputs, samples).map_err(at)?;
+        let inputs: [&[f64]; 3] = [&pose, &twist, &accelerations];
+        let acceleration = evaluate(
+            self.model,
+            Function::AccelerationFromActuators,
+            &inputs,
+            samples,
+        )
+        .map_err(at)?;
+        let reached =
+            evaluate(self.model, Function::ActuatorPositions, &[&pose], samples).map_err(at)?;
+        let positions = keep(&block.positions, n);
+        Ok(Motion {
+            closure_residual: largest_difference(&positions, &reached, info.actuator_is_revolute),
+            first_sample: kept.start,
+            samples,
+            pose,
+            twist,
+            acceleration,
+            torques: keep(&block.torques, n),
+            ..self.empty()
+        })
+    }
+}
+
+/// Checks a run against the model and the settings.
+pub(crate) fn check(model: &dyn Model, log: &Log, settings: &Settings) -> Result<(), Error> {
+    let info = model.info();
+    let mut problems = Vec::new();
+    if log.actuators() != info.sizes.actuators {
+        problems.push(
+            Problem::new(format!(
+                "the run has {}, the robot `{}` has {}",
+                counted(log.actuators(), "actuator"),
+                info.name,
+                info.sizes.actuators
+            ))
+            .file(log.name())
+            .help("map one position and one torque column to each actuator"),
+        );
+    }
+    let needed = settings.samples_needed();
+    if log.samples() < needed {
+        problems.push(
+            Problem::new(format!(
+                "the run has {} samples; the filters, the decimation and the skipped samples need at least {needed}",
+                log.samples()
+            ))
+            .file(log.name())
+            .help("record a longer run, or skip fewer samples"),
+        );
+    }
+    let nyquist = log.sampling_frequency() / 2.0;
+    // Written so that a cutoff that is not a number is a problem, too.
+    let below = settings.filter_cutoff_hz < nyquist;
+    if !below {
+        problems.push(
+            Problem::new(format!(
+                "the cutoff frequency of {} Hz is not below half the sampling frequency, {nyquist} Hz",
+                settings.filter_cutoff_hz
+            ))
+            .file(log.name())
+            .help("choose about ten times the bandwidth of the motion"),
+        );
+    }
+    Error::check(problems)
+}
+
+/// `1 actuator`, `2 actuators`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The largest difference between measured and reached positions, angles modulo a turn.
+fn largest_difference(measured: &[f64], reached: &[f64], revolute: &[bool]) -> f64 {
+    measured
+        .iter()
+        .zip(reached)
+        .zip(revolute.iter().cycle())
+        .map(|((m, q), revolute)| if *revolute { wrap_angle(m - q) } else { m - q })
+        .fold(0.0, |largest, difference| largest.max(difference.abs()))
+}

@@ -1,0 +1,113 @@
+//! Filtered positions of a run with their derivatives and the torques of the same samples, block by
+//! block.
+
+use crate::{
+    data::{Log, Reader},
+    error::Error,
+    filters::{ZeroPhase, butterworth, central_differences},
+    settings::Settings,
+};
+
+/// Samples of a block, at most.
+const BLOCK_SAMPLES: usize = 4096;
+
+/// Some successive samples of a log; all arrays are samples x n.
+pub(super) struct Derivatives {
+    /// Number of the first sample in the log.
+    pub(super) first: usize,
+    pub(super) samples: usize,
+    pub(super) positions: Vec<f64>,
+    pub(super) velocities: Vec<f64>,
+    pub(super) accelerations: Vec<f64>,
+    pub(super) torques: Vec<f64>,
+}
+
+/// A log that is filtered and differentiated.
+pub(super) struct Stream<'a> {
+    reader: Reader<'a>,
+    filter: ZeroPhase,
+    frequency: f64,
+    samples: usize,
+    width: usize,
+    /// Filtered positions from sample `start` on.
+    positions: Vec<f64>,
+    start: usize,
+    /// Torques from sample `next` on.
+    torques: Vec<f64>,
+    /// The next sample to give out.
+    next: usize,
+}
+
+impl<'a> Stream<'a> {
+    /// Starts with the first sample.
+    pub(super) fn new(log: &'a Log, settings: &Settings) -> Result<Self, Error> {
+        let frequency = log.sampling_frequency();
+        let cutoff = settings.filter_cutoff_hz * 2.0 / frequency;
+        let filter = butterworth(settings.filter_order, cutoff)?;
+        Ok(Self {
+            filter: ZeroPhase::new(&filter, log.actuators(), log.samples())?,
+            reader: log.reader()?,
+            frequency,
+            samples: log.samples(),
+            width: log.actuators(),
+            positions: Vec::new(),
+            start: 0,
+            torques: Vec::new(),
+            next: 0,
+        })
+    }
+
+    /// Number of samples that have been given out.
+    pub(super) fn done(&self) -> usize {
+        self.next
+    }
+
+    /// The next block, or `None` at the end.
+    pub(super) fn next(&mut self) -> Result<Option<Derivatives>, Error> {
+        loop {
+            let known = self.start + self.positions.len() / self.width;
+            // An acceleration needs two samples on either side; at the end there are none.
+            let possible = if known == self.samples {
+                known
+            } else {
+                known.saturating_sub(2)
+            };
+            if possible > self.next {
+                let end = possible.min(self.next + BLOCK_SAMPLES);
+                return Ok(Some(self.take(end)));
+            }
+            let Some(block) = self.reader.next()? else {
+                return Ok(None);
+            };
+            self.filter.push(&block.positions, &mut self.positions);
+            self.torques.extend(block.torques);
+        }
+    }
+
+    /// Gives out the samples up to `end`.
+    fn take(&mut self, end: usize) -> Derivatives {
+        let (first, n, last) = (self.next, self.width, self.samples - 1);
+        let (before, behind) = (first.saturating_sub(1), (end + 1).min(self.samples));
+        // One sample more on either side, for the accelerations.
+        let around = central_differences(&self.positions, self.start, before..behind, (n, last));
+        let around: Vec<f64> = around.map(|step| step * self.frequency).collect();
+        let accelerations = central_differences(&around, before, first..end, (n, last));
+        let accelerations = accelerations.map(|step| step * self.frequency).collect();
+        let inside = |values: &[f64], start: usize| -> Vec<f64> {
+            values[(first - start) * n..(end - start) * n].to_vec()
+        };
+        let block = Derivatives {
+            first,
+            samples: end - first,
+            positions: inside(&self.positions, self.start),
+            velocities: inside(&around, before),
+            accelerations,
+            torques: self.torques.drain(..(end - first) * n).collect(),
+        };
+        self.next = end;
+        let obsolete = end.saturating_sub(2).max(self.start);
+        self.positions.drain(..(obsolete - self.start) * n);
+        self.start = obsolete;
+        block
+    }
+}

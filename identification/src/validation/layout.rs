@@ -1,0 +1,164 @@
+//! What stands where in the rows of a validation, and their sums of squares.
+
+use std::ops::Range;
+
+use overact::Sizes;
+
+use super::Series;
+use crate::estimate::LineError;
+
+/// Where measured and predicted values of one quantity stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Pair {
+    pub(super) measured: usize,
+    pub(super) predicted: usize,
+}
+
+/// Measured torques, those freed of their internal part where there is redundancy, then for each
+/// candidate predicted torques, measured and predicted Γ.
+#[derive(Debug, Clone)]
+pub(super) struct Layout {
+    n: usize,
+    r: usize,
+    candidates: usize,
+}
+
+impl Layout {
+    pub(super) fn new(sizes: Sizes, candidates: usize) -> Self {
+        Self {
+            n: sizes.actuators,
+            r: sizes.dof,
+            candidates,
+        }
+    }
+
+    /// Values of a row.
+    pub(super) fn width(&self) -> usize {
+        self.start(self.candidates)
+    }
+
+    /// The first value of a candidate.
+    fn start(&self, candidate: usize) -> usize {
+        let measured = if self.n > self.r { 2 * self.n } else { self.n };
+        measured + candidate * (self.n + 2 * self.r)
+    }
+
+    /// Measured torques.
+    pub(super) fn measured(&self) -> Range<usize> {
+        0..self.n
+    }
+
+    /// Measured torques without their internal part.
+    pub(super) fn projected(&self) -> Option<Range<usize>> {
+        (self.n > self.r).then_some(self.n..2 * self.n)
+    }
+
+    /// Predicted torques.
+    pub(super) fn predicted_torques(&self, candidate: usize) -> Range<usize> {
+        let start = self.start(candidate);
+        start..start + self.n
+    }
+
+    /// A torque against its prediction.
+    pub(super) fn torque(&self, candidate: usize, actuator: usize) -> Pair {
+        Pair {
+            measured: actuator,
+            predicted: self.start(candidate) + actuator,
+        }
+    }
+
+    /// A torque without its internal part against its prediction.
+    pub(super) fn projected_torque(&self, candidate: usize, actuator: usize) -> Option<Pair> {
+        let measured = self.projected()?.start + actuator;
+        let pair = self.torque(candidate, actuator);
+        Some(Pair { measured, ..pair })
+    }
+
+    /// A line of Γ against its prediction.
+    pub(super) fn line(&self, candidate: usize, line: usize) -> Pair {
+        let measured = self.start(candidate) + self.n + line;
+        Pair {
+            measured,
+            predicted: measured + self.r,
+        }
+    }
+
+    /// All pairs.
+    fn pairs(&self) -> Vec<Pair> {
+        (0..self.candidates)
+            .flat_map(|candidate| {
+                let torques = (0..self.n).map(move |i| self.torque(candidate, i));
+                let projected =
+                    (0..self.n).filter_map(move |i| self.projected_torque(candidate, i));
+                let lines = (0..self.r).map(move |line| self.line(candidate, line));
+                torques.chain(projected).chain(lines)
+            })
+            .collect()
+    }
+}
+
+/// Sums of squares over decimated rows, and the rows at the points of the plots.
+#[derive(Debug)]
+pub(super) struct Sums<'a> {
+    layout: &'a Layout,
+    pairs: Vec<Pair>,
+    /// Of each pair, the squares of the differences and of the measured values.
+    squares: Vec<(f64, f64)>,
+    taken: usize,
+    stride: usize,
+    points: Vec<f64>,
+}
+
+impl<'a> Sums<'a> {
+    /// Sums of no rows; one row in `stride` is kept for plots.
+    pub(super) fn new(layout: &'a Layout, stride: usize) -> Self {
+        let pairs = layout.pairs();
+        Self {
+            squares: vec![(0.0, 0.0); pairs.len()],
+            layout,
+            pairs,
+            taken: 0,
+            stride,
+            points: Vec::new(),
+        }
+    }
+
+    /// The layout of the rows.
+    pub(super) const fn layout(&self) -> &Layout {
+        self.layout
+    }
+
+    /// Takes decimated rows.
+    pub(super) fn take(&mut self, rows: &[f64]) {
+        for row in rows.chunks_exact(self.layout.width()) {
+            if self.taken.is_multiple_of(self.stride) {
+                self.points.extend_from_slice(row);
+            }
+            self.taken += 1;
+            for (pair, (residual, measured)) in self.pairs.iter().zip(&mut self.squares) {
+                let value = row[pair.measured];
+                *residual += (value - row[pair.predicted]).powi(2);
+                *measured += value * value;
+            }
+        }
+    }
+
+    /// The error of a pair.
+    pub(super) fn error(&self, name: &str, pair: Pair) -> LineError {
+        let place = self.pairs.iter().position(|other| *other == pair);
+        let (residual, measured) = place.map_or((0.0, 0.0), |place| self.squares[place]);
+        LineError::new(name, residual.sqrt(), measured.sqrt(), self.taken)
+    }
+
+    /// The values of a pair at the points of the plots.
+    pub(super) fn series(&self, name: &str, pair: Pair, time: &dyn Fn(usize) -> f64) -> Series {
+        let width = self.layout.width();
+        let values = |index: usize| self.points.iter().skip(index).step_by(width).copied();
+        Series {
+            name: name.to_owned(),
+            time: (0..self.points.len() / width).map(time).collect(),
+            measured: values(pair.measured).collect(),
+            predicted: values(pair.predicted).collect(),
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Validation of estimated parameters on a run, sections 5.3 and 5.4 of the paper.
+//!
+//! Predicted Γ = W χ is compared with the measured one, line by line, after the same decimation as
+//! in the identification. The torques of all actuators are compared, too: the prediction is the
+//! least-norm one, τ = J_p^inv (J_p^invᵀ J_p^inv)^-1 Γ¹, so an internal preload of a redundant robot
+//! counts as error; without it, the measured torques are those of eq. (50).
+//!
+//! A run is gone through once, whatever the number of estimates: what is measured and what each
+//! estimate predicts stand side by side in one row per sample, and these rows are decimated.
+
+mod layout;
+
+use overact::{Function, Info};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::{
+    blocks::{BLOCK, slice},
+    conditioning::least_norm,
+    data::Log,
+    error::Error,
+    estimate::{LineError, overall, percent},
+    filters::Decimator,
+    identify::figures::RunFigures,
+    kinematics::{Motion, Motions},
+    observation::{Chunk, Observer, Points},
+    regression::Projection,
+    sink::Plan,
+};
+
+use layout::{Layout, Pair, Sums};
+
+/// Measured and predicted values of one line or torque, decimated.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Series {
+    /// Name of the coordinate or actuator.
+    pub name: String,
+    /// Times, s from the start of the log.
+    pub time: Vec<f64>,
+    /// Measured values (N, N m).
+    pub measured: Vec<f64>,
+    /// Predicted values (N, N m).
+    pub predicted: Vec<f64>,
+}
+
+/// One actuator's entry in Table 3.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TorqueComparison {
+    /// Name of the actuator.
+    pub actuator: String,
+    /// 100 ||τ - τ*||/||τ||, τ* being the least-norm torque.
+    pub least_norm_percent: f64,
+    /// The same for the torque of eq. (26) with an overconstraint of zero, which satisfies the model but
+    /// is not of least norm; none without redundancy, and for models that lack the closure matrices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closure_percent: Option<f64>,
+}
+
+/// How well parameters reproduce a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validation {
+    /// Name of the run.
+    pub run: String,
+    /// ||Y - W χ|| of all lines (N or N m, mixed for mixed lines).
+    pub residual_norm: f64,
+    /// 100 ||Y - W χ||/||Y|| of all lines.
+    pub relative_error_percent: f64,
+    /// Each line of Γ.
+    pub lines: Vec<LineError>,
+    /// Each actuator's torque against the least-norm prediction.
+    pub torques: Vec<LineError>,
+    /// The same with the measured torques freed of their internal part (50); empty without
+    /// redundancy.
+    pub projected_torques: Vec<LineError>,
+    /// Each actuator's torque against both predictions.
+    pub table: Vec<TorqueComparison>,
+    /// The lines of Γ over time.
+    pub line_series: Vec<Series>,
+    /// The torques over time.
+    pub torque_series: Vec<Series>,
+}
+
+/// Parameters whose predictions are compared with a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Candidate<'a> {
+    /// Number of their projection among the observer's.
+    pub(crate) projection: usize,
+    /// Places of their columns among the base parameters.
+    pub(crate) selected: &'a [usize],
+    /// Their values (SI units).
+    pub(crate) values: &'a [f64],
+}
+
+/// Compares a run with the predictions of several sets of parameters. A projection that is singular on
+/// the run has no comparison, but an error. The motion of the run is given, too, for plots.
+///
+/// # Errors
+/// A run that does not fit, a sample outside the workspace, a file that can't be read.
+pub(crate) fn validate(
+    observer: &Observer<'_>,
+    log: &Log,
+    candidates: &[Candidate<'_>],
+    progress: &dyn Fn(usize, usize),
+) -> Result<(Vec<Result<Validation, Error>>, RunFigures), Error> {
+    let info = observer.model.info();
+    let mut motions = Motions::new(observer.model, log, observer.settings)?;
+    let samples = motions.samples();
+    let decimator = Decimator::new(observer.settings.decimation)?;
+    let layout = Layout::new(info.sizes, candidates.len());
+    let mut stream = decimator.stream(layout.width(), samples)?;
+    let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
+    let plan = Plan::new(decimator.kept(samples), 0);
+    let stride = plan.stride();
+    let mut points = Points::new(observer, log, &decimator, samples, &plan);
+    let mut sums = Sums::new(&layout, stride);
+    while let Some(motion) = motions.next()? {
+        let chunks = observer.chunks(&motion, &mut failed)?;
+        let rows: Vec<Vec<f64>> = chunks
+            .par_iter()
+            .enumerate()
+            .map(|(index, chunk)| {
+                rows(
+                    observer,
+                    &layout,
+                    &motion,
+                    (index * BLOCK, chunk),
+                    candidates,
+                    &failed,
+                )
+            })
+            .collect::<Result<_, Error>>()?;
+        let mut kept = Vec::new();
+        rows.iter().for_each(|rows| stream.push(rows, &mut kept));
+        sums.take(&kept);
+        points.take(&motion, &chunks);
+        progress(motions.done(), log.samples());
+    }
+    progress(log.samples(), log.samples());
+    let first = observer.settings.skip_start + decimator.first(samples);
+    let time = |point: usize| {
+        (first + point * stride * decimator.factor()) as f64 / log.sampling_frequency()
+    };
+    let of_candidate = |(number, candidate): (usize, &Candidate<'_>)| {
+        let projection = &observer.projections[candidate.projection];
+        match &failed[candidate.projection] {
+            Some(error) => Err(error.clone()),
+            None => {
+                let names = projection.line_names(&info);
+                Ok(validation(
+                    &sums,
+                    number,
+                    log.name(),
+                    info.actuators,
+                    &names,
+                    &time,
+                ))
+            }
+        }
+    };
+    points.partitions(observer.projections);
+    let validations = candidates.iter().enumerate().map(of_candidate).collect();
+    Ok((validations, points.figures))
+}
+
+/// The comparison of one candidate.
+fn validation(
+    sums: &Sums<'_>,
+    candidate: usize,
+    run: &str,
+    actuators: &[&str],
+    names: &[String],
+    time: &dyn Fn(usize) -> f64,
+) -> Validation {
+    let layout = sums.layout();
+    let lines: Vec<Pair> = (0..names.len())
+        .map(|line| layout.line(candidate, line))
+        .collect();
+    let torques = |of: fn(&Layout, usize, usize) -> Option<Pair>| -> Vec<Pair> {
+        (0..actuators.len())
+            .filter_map(|actuator| of(layout, candidate, actuator))
+            .collect()
+    };
+    let torque_pairs = torques(|layout, c, actuator| Some(layout.torque(c, actuator)));
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let errors = |pairs: &[Pair], names: &[&str]| -> Vec<LineError> {
+        let named = pairs.iter().zip(names);
+        named.map(|(pair, name)| sums.error(name, *pair)).collect()
+    };
+    let series = |pairs: &[Pair], names: &[&str]| -> Vec<Series> {
+        let named = pairs.iter().zip(names);
+        named
+            .map(|(pair, name)| sums.series(name, *pair, time))
+            .collect()
+    };
+    let line_errors = errors(&lines, &names);
+    let (residual_norm, measured_norm) = overall(&line_errors);
+    let torque_errors = errors(&torque_pairs, actuators);
+    Validation {
+        run: run.to_owned(),
+        residual_norm,
+        relative_error_percent: percent(residual_norm, measured_norm),
+        table: torque_errors
+            .iter()
+            .map(|error| TorqueComparison {
+                actuator: error.name.clone(),
+                least_norm_percent: error.relative_error_percent,
+                closure_percent: None,
+            })
+            .collect(),
+        projected_torques: errors(&torques(Layout::projected_torque), actuators),
+        line_series: series(&lines, &names),
+        torque_series: series(&torque_pairs, actuators),
+        lines: line_errors,
+        torques: torque_errors,
+    }
+}
+
+/// The rows of a chunk, of which sample `first` of the motion is the first.
+fn rows(
+    observer: &Observer<'_>,
+    layout: &Layout,
+    motion: &Motion,
+    (first, chunk): (usize, &Chunk),
+    candidates: &[Candidate<'_>],
+    failed: &[Option<Error>],
+) -> Result<Vec<f64>, Error> {
+    let info = observer.model.info();
+    let (n, r) = (info.sizes.actuators, info.sizes.dof);
+    let count = BLOCK.min(motion.samples - first);
+    let pose = slice(&motion.pose, info.sizes.pose, first, count);
+    let mut jacobians = vec![0.0; count * n * r];
+    observer
+        .model
+        .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+        .map_err(|error| motion.outside(first + error.sample, error.error))?;
+    let torques = slice(&motion.torques, n, first, count);
+    let mut rows = vec![0.0; count * layout.width()];
+    for (sample, row) in rows.chunks_exact_mut(layout.width()).enumerate() {
+        let jacobian = slice(&jacobians, n * r, sample, 1);
+        let Some(distribution) = least_norm(jacobian, r) else {
+            let error = overact::Error::SingularPlatform {
+                actuators: "actuators",
+                condition: f64::INFINITY,
+            };
+            return Err(motion.outside(first + sample, error).into());
+        };
+        let measured = slice(torques, n, sample, 1);
+        row[layout.measured()].copy_from_slice(measured);
+        if let Some(range) = layout.projected() {
+            let gamma = transposed_product(jacobian, measured, r);
+            product(&distribution, &gamma, &mut row[range]);
+        }
+        for (number, candidate) in candidates.iter().enumerate() {
+            if failed[candidate.projection].is_some() {
+                continue;
+            }
+            let projection = &observer.projections[candidate.projection];
+            let lines = &chunk.lines[candidate.projection];
+            let width = observer.base.len() + 1;
+            let mut predicted = vec![0.0; r];
+            let equations = lines.iter().map(|rows| slice(rows, width, sample, 1));
+            for (line, equation) in equations.enumerate() {
+                let terms = candidate.selected.iter().zip(candidate.values);
+                predicted[line] = terms.map(|(&column, value)| equation[column] * value).sum();
+                row[layout.line(number, line).measured] = equation[width - 1];
+                row[layout.line(number, line).predicted] = predicted[line];
+            }
+            let place = &mut row[layout.predicted_torques(number)];
+            if *projection == Projection::Joints {
+                place.copy_from_slice(&predicted);
+            } else {
+                let gamma = platform_input(projection, &info, jacobian, &predicted);
+                product(&distribution, &gamma, place);
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Γ¹ of inputs Γ in the projection: themselves on the platform, J_aᵀ Γ² on kept actuators.
+pub(crate) fn platform_input(
+    projection: &Projection,
+    info: &Info<'_>,
+    jacobian: &[f64],
+    inputs: &[f64],
+) -> Vec<f64> {
+    let Some(kept) = projection.kept(info) else {
+        return inputs.to_vec();
+    };
+    let mut torques = vec![0.0; info.sizes.actuators];
+    kept.iter()
+        .zip(inputs)
+        .for_each(|(&k, value)| torques[k] = *value);
+    transposed_product(jacobian, &torques, info.sizes.dof)
+}
+
+/// Product of a matrix (rows of the vector's length) with a vector.
+pub(crate) fn product(matrix: &[f64], vector: &[f64], result: &mut [f64]) {
+    for (row, result) in matrix.chunks_exact(vector.len()).zip(result) {
+        *result = row.iter().zip(vector).map(|(a, b)| a * b).sum();
+    }
+}
+
+/// Product of the transpose of a matrix of `r` columns with a vector: Γ¹ = J_p^invᵀ τ.
+pub(crate) fn transposed_product(matrix: &[f64], vector: &[f64], r: usize) -> Vec<f64> {
+    let mut result = vec![0.0; r];
+    for (row, factor) in matrix.chunks_exact(r).zip(vector) {
+        result
+            .iter_mut()
+            .zip(row)
+            .for_each(|(result, a)| *result += a * factor);
+    }
+    result
+}

@@ -1,0 +1,74 @@
+//! Standard deviations are honest: over many virtual experiments the truth lies within three of them.
+
+mod common;
+#[path = "common/dualv.rs"]
+mod dualv;
+
+use dualv::{DualV, experiment, log, records, settings, truth};
+use overact_identification::{
+    Estimate, Experiment, Identification, Log, Settings, Stage, identify,
+};
+
+fn identified(robot: &DualV, runs: &[Log], settings: &Settings) -> Identification {
+    let truth = truth();
+    let experiment = Experiment {
+        runs,
+        validation: &[],
+        true_values: Some(&truth),
+    };
+    identify(robot, &experiment, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Root mean square, and part within 3.
+fn spread(misses: &[f64]) -> (f64, f64) {
+    let count = misses.len() as f64;
+    let squares: f64 = misses.iter().map(|miss| miss * miss).sum();
+    let within = misses.iter().filter(|miss| miss.abs() <= 3.0).count() as f64;
+    ((squares / count).sqrt(), within / count)
+}
+
+#[test]
+fn the_truth_is_within_three_correlated_deviations() {
+    let robot = DualV::new();
+    let (mut white, mut correlated) = (Vec::new(), Vec::new());
+    // Noise alone, then drives that fight a torque which returns with every tooth of the motor.
+    for (cogging, seed) in [(0.0, 1), (0.0, 2), (0.3, 3), (0.3, 4)] {
+        let mut made = Vec::new();
+        for record in records(&robot, &experiment(&robot, 1.0, seed)) {
+            made.push(log(record, |positions, torques| {
+                for (torque, q) in torques.iter_mut().zip(positions) {
+                    *torque += cogging * (48.0 * *q).sin();
+                }
+            }));
+        }
+        let result = identified(&robot, &made, &settings(&robot));
+        let base = |estimate: &&Estimate| estimate.stage == Stage::Base;
+        for parameter in result
+            .estimates
+            .iter()
+            .filter(base)
+            .flat_map(|e| &e.parameters)
+        {
+            let error = parameter.value - parameter.true_value.expect("known");
+            let own = error / parameter.correlated_standard_deviation;
+            println!(
+                "cogging {cogging}, seed {seed}: {:12} {own:6.2}",
+                parameter.name
+            );
+            correlated.push(own);
+            if cogging > 0.0 {
+                white.push(error / parameter.standard_deviation);
+            }
+        }
+    }
+    let (white, correlated) = (spread(&white), spread(&correlated));
+    println!(
+        "root mean square and part within 3: white with cogging {white:.2?}, correlated {correlated:.2?}"
+    );
+    assert!(
+        correlated.1 >= 0.95 && (0.5..1.5).contains(&correlated.0),
+        "{correlated:?}"
+    );
+    // White deviations are too small then.
+    assert!(white.0 > 1.5, "{white:?}");
+}
