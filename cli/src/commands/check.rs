@@ -5,7 +5,7 @@ use crate::{
     load::{Robot, load_with},
     output::{counted, json, print},
 };
-use overact_codegen::Effort;
+use overact_codegen::{Effort, Request};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     for file in &arguments.files {
         // Whether there is a model does not depend on how few operations it takes.
-        match load_with(file, &|_| Effort::None) {
+        match load_with(file, &Request::with_effort(Effort::None)) {
             Ok(robot) => good.push(Checked::new(robot)),
             Err(failure) => bad.push(failure),
         }

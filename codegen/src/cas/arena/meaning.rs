@@ -3,7 +3,7 @@
 use super::super::field::{CIRCLE, Element, mix, mix_name};
 use super::super::sample::Sample;
 use super::{Handle, Meaning, Op, Tables, canonical};
-use std::ops::{Add, Div, Mul, Neg};
+use std::ops::{Add, Mul, Neg};
 
 impl Tables {
     fn image(&self, handle: Handle, point: usize) -> Element {
@@ -134,6 +134,15 @@ impl Meaning {
         self.image == other.image && self.sample.agrees(other.sample)
     }
 
+    /// The quotient of two values.
+    pub(crate) fn over(self, other: Self) -> Self {
+        let inverse = Self {
+            image: other.image.map(Element::inverse),
+            sample: Sample::real(1.0) / other.sample,
+        };
+        self * inverse
+    }
+
     fn with(
         self,
         other: Self,
@@ -168,12 +177,5 @@ impl Mul for Meaning {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         self.with(other, |a, b| a * b, self.sample * other.sample)
-    }
-}
-
-impl Div for Meaning {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        self.with(other, |a, b| a * b.inverse(), self.sample / other.sample)
     }
 }

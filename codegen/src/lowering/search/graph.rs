@@ -252,7 +252,7 @@ impl Graph {
         match definition {
             Definition::Sum(a, b) => self.meaning(a) + self.meaning(b),
             Definition::Product(a, b) => self.meaning(a) * self.meaning(b),
-            Definition::Quotient(a, b) => self.meaning(a) / self.meaning(b),
+            Definition::Quotient(a, b) => self.meaning(a).over(self.meaning(b)),
             Definition::Leaf | Definition::Fixed(..) => Meaning::NONE,
         }
     }

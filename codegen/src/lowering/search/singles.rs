@@ -6,11 +6,12 @@ use super::graph::{Definition, Graph, Signed};
 pub(super) fn improve(graph: &mut Graph) -> i32 {
     let mut saved = 0;
     for node in 0..graph.len() {
-        if graph.is_live(node) && graph.cone(node) > 1 {
-            if let Some((by, saving)) = best(graph, node) {
-                graph.replace(node, by);
-                saved += saving;
-            }
+        if graph.is_live(node)
+            && graph.cone(node) > 1
+            && let Some((by, saving)) = best(graph, node)
+        {
+            graph.replace(node, by);
+            saved += saving;
         }
     }
     saved
@@ -46,25 +47,21 @@ fn candidates(graph: &Graph, node: usize) -> Vec<Definition> {
     for other in (0..graph.len()).filter(|&n| n != node && graph.is_live(n)) {
         for negative in [false, true] {
             let a = Signed::new(other, negative);
-            if let Some(b) = graph.find(target + -graph.value(a)) {
-                if b.node() >= other && b.node() != node {
-                    found.push(Definition::Sum(a, b));
-                }
-            }
+            let b = graph.find(target + -graph.value(a));
+            let b = b.filter(|b| b.node() >= other && b.node() != node);
+            found.extend(b.map(|b| Definition::Sum(a, b)));
         }
         let a = Signed::new(other, false);
-        if let Some(b) = graph.find(target * graph.inverse(other)) {
-            if b.node() >= other && b.node() != node {
-                found.push(Definition::Product(a, b));
-            }
-        }
+        let b = graph.find(target * graph.inverse(other));
+        let b = b.filter(|b| b.node() >= other && b.node() != node);
+        found.extend(b.map(|b| Definition::Product(a, b)));
     }
-    for divisor in graph.divisors() {
-        if let Some(a) = graph.find(target * graph.value(Signed::new(divisor, false))) {
-            if a.node() != node && divisor != node {
-                found.push(Definition::Quotient(a, Signed::new(divisor, false)));
-            }
-        }
+    for divisor in graph.divisors().into_iter().filter(|&d| d != node) {
+        let by = Signed::new(divisor, false);
+        let a = graph
+            .find(target * graph.value(by))
+            .filter(|a| a.node() != node);
+        found.extend(a.map(|a| Definition::Quotient(a, by)));
     }
     found
 }
