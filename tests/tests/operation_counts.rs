@@ -1,0 +1,138 @@
+//! How many operations the identification models take, so that none grows unnoticed: those of
+//! `generated/`, and those of the works on which other generators have been counted, which ours stays
+//! below.
+//!
+//! An operation is an addition, a subtraction, a multiplication or a division; square roots and
+//! trigonometric pairs stand apart.
+
+use overact_codegen::compile::model_with;
+use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
+use overact_codegen::{Effort, Request, Source, description, mechanism};
+use overact_tests::support::{Failure, repository};
+use std::fmt::Write as _;
+use std::fs;
+
+/// A work: its description, whether all fourteen parameters of each joint stand in it, its columns, and
+/// the fewest operations that any other tool or hand takes for it.
+struct Work {
+    file: &'static str,
+    full: bool,
+    columns: Columns,
+    best_known: usize,
+}
+
+const fn work(file: &'static str, full: bool, columns: Columns, best_known: usize) -> Work {
+    Work {
+        file,
+        full,
+        columns,
+        best_known,
+    }
+}
+
+/// All are evaluated from joint angles. The best known counts are those of CasADi, SymPy, SymForce,
+/// OpenSYMORO, SymPyBotics, or of a model written by hand, whichever is least.
+const WORKS: [Work; 14] = [
+    work("robots/dualv.toml", false, Columns::Standard, 385),
+    work("robots/dualv.toml", false, Columns::Base, 357),
+    work("robots/rx90.toml", true, Columns::Base, 769),
+    work("tests/fixtures/puma560.toml", true, Columns::Base, 824),
+    work("robots/stanford.toml", true, Columns::Base, 670),
+    work("robots/kuka_lwr.toml", true, Columns::Base, 1175),
+    work("robots/five_bar.toml", true, Columns::Standard, 181),
+    work("robots/three_leg_point.toml", true, Columns::Standard, 231),
+    work("robots/planar_3prr.toml", true, Columns::Standard, 356),
+    work("robots/planar_4prr.toml", true, Columns::Standard, 457),
+    work("robots/delta.toml", true, Columns::Standard, 763),
+    work("robots/delta_4.toml", true, Columns::Standard, 1061),
+    work("robots/hexapod.toml", true, Columns::Standard, 3343),
+    work("robots/octopod.toml", true, Columns::Standard, 4377),
+];
+
+/// The mechanism with all parameters of all joints and of the platform.
+fn with_all_parameters(mut mechanism: Mechanism) -> Mechanism {
+    let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    for joint in joints.filter(|joint| joint.kind != JointKind::Fixed) {
+        joint.parameters = StandardParameter::ALL.to_vec();
+    }
+    if let Some(platform) = &mut mechanism.platform {
+        platform.parameters = StandardParameter::INERTIA.to_vec();
+        platform.payload = None;
+    }
+    mechanism
+}
+
+fn line(work: &Work, effort: Effort) -> Result<(String, usize), Failure> {
+    let source = Source::new(work.file, fs::read_to_string(repository(work.file))?);
+    let rendered = |errors: overact_codegen::Diagnostics| errors.render_plain(&source);
+    let described = description::parse(&source).map_err(rendered)?;
+    let mut robot = mechanism::check(&described).map_err(rendered)?;
+    if work.full {
+        robot = with_all_parameters(robot);
+    }
+    let family = Family::IdmRedPlatform(work.columns);
+    let request = Request {
+        wanted: &|_, f, from| f == family && from == From::Joints,
+        ..Request::with_effort(effort)
+    };
+    let model = model_with(robot, &request).map_err(|error| format!("{error:?}"))?;
+    let cost = model.functions.first().ok_or("no function")?.program.cost();
+    let columns = match work.columns {
+        Columns::Standard => model.selection.standard.len(),
+        Columns::Base => model.selection.base.len(),
+    };
+    let text = format!(
+        "{:28} {:>8} {columns:>4} columns {:>5} operations {:>2} pairs, best known {:>5}",
+        work.file,
+        format!("{:?}", work.columns).to_lowercase(),
+        cost.operations(),
+        cost.trigonometric_pairs,
+        work.best_known,
+    );
+    Ok((text, cost.operations()))
+}
+
+#[test]
+fn no_other_tool_takes_fewer_operations() -> Result<(), Failure> {
+    let mut table = String::new();
+    for work in &WORKS {
+        let (line, operations) = line(work, Effort::Quick)?;
+        assert!(operations < work.best_known, "{line}");
+        writeln!(table, "{line}")?;
+    }
+    insta::assert_snapshot!(table);
+    Ok(())
+}
+
+#[test]
+fn operations_of_the_generated_models() -> Result<(), Failure> {
+    let mut table = String::new();
+    let folder = fs::read_dir(repository("generated/src"))?;
+    let mut files = folder
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    files.sort();
+    for file in files {
+        let name = file.file_stem().map(|s| s.to_string_lossy().into_owned());
+        let name = name.unwrap_or_default();
+        let text = fs::read_to_string(&file)?;
+        let mut count = None;
+        for line in text.lines().map(str::trim) {
+            if line.starts_with("///") && line.contains(" operations (") {
+                count = line.strip_prefix("/// ");
+            }
+            let function = line.strip_prefix("pub fn ").and_then(|l| l.split_once('('));
+            if let Some((function, _)) = function {
+                let count = count.take().unwrap_or_default();
+                let is_model = ["idm_red_platform", "idm_red_actuators", "mass_matrix"];
+                if is_model.iter().any(|model| function.starts_with(model)) {
+                    let operations = count.split(' ').next().unwrap_or_default();
+                    writeln!(table, "{name:16} {function:44} {operations:>6}")?;
+                }
+            }
+        }
+    }
+    insta::assert_snapshot!(table);
+    Ok(())
+}
