@@ -7,6 +7,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 /// What is left of a row of J_p^inv without its part along rows before it, relative to its length,
 /// below which it adds nothing to them.
 const DEPENDENT: f64 = 1e-6;
+/// Length of a row of J_p^inv, relative to the longest, below which it is rounding.
+const ROUNDING: f64 = 1e-10;
 
 /// Velocity components that a leg's end shares with the platform, per twist coordinate.
 #[must_use]
@@ -68,6 +70,8 @@ impl Mechanism {
         let Some(jacobian) = self.inverse_jacobian_at_home() else {
             return Vec::new();
         };
+        let lengths = jacobian.row_iter().map(|row| row.norm());
+        let least = ROUNDING * lengths.fold(0.0, f64::max);
         let mut basis: Vec<DVector<f64>> = Vec::new();
         let mut chosen = Vec::new();
         for (actuator, row) in jacobian.row_iter().enumerate() {
@@ -79,7 +83,8 @@ impl Mechanism {
                     rest -= known * known.dot(&rest);
                 }
             }
-            if chosen.len() < self.dof() && rest.norm() > DEPENDENT * row.norm() {
+            let is_new = row.norm() > least && rest.norm() > DEPENDENT * row.norm();
+            if is_new && chosen.len() < self.dof() {
                 basis.push(rest.normalize());
                 chosen.push(actuator);
             }
