@@ -199,8 +199,10 @@ impl Sketch {
         let state = State::solve(&mechanism, &mechanism.home, &still, &still);
         let jacobians = state.and_then(|state| state.jacobians(&mechanism));
         jacobians.is_ok_and(|j| {
-            // A single joint has no condition number; what tells is how fast it has to move.
-            j.joints.amax() < MAX_CONDITION
+            let least = |matrix| singular_values(matrix).min() * MAX_CONDITION;
+            // A single joint or coordinate has no condition number: what tells is the size.
+            least(&j.legs) > 1.0
+                && least(&j.inverse) > 1.0
                 && j.worst_leg_condition(&mechanism) < MAX_CONDITION / 3.0
                 && condition(&j.inverse) < MAX_CONDITION / 3.0
                 && condition(&j.a_p) < MAX_CONDITION / 2.0
