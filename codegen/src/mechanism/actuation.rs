@@ -5,8 +5,10 @@ use crate::mechanism::numeric::{platform_frame, target};
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// What is left of a row of J_p^inv without its part along rows before it, relative to its length,
-/// below which it adds nothing to them.
-const DEPENDENT: f64 = 1e-6;
+/// below which it adds little to them, and below which it adds nothing.
+const DEPENDENT: [f64; 2] = [1e-2, 1e-6];
+/// Length of a row of J_p^inv, relative to the fastest joint's, below which it is rounding.
+const ROUNDING: f64 = 1e-10;
 
 /// Velocity components that a leg's end shares with the platform, per twist coordinate.
 #[must_use]
@@ -45,9 +47,10 @@ pub fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f64>> {
 }
 
 impl Mechanism {
-    /// J_p^inv at the home configuration, n x r; `None` if a leg is not regular there.
+    /// The rates of all joints per twist coordinate at the home configuration, n_t x r; `None` if a
+    /// leg is not regular there.
     #[must_use]
-    pub fn inverse_jacobian_at_home(&self) -> Option<DMatrix<f64>> {
+    pub fn rates_at_home(&self) -> Option<DMatrix<f64>> {
         let Some(platform) = &self.platform else {
             return Some(DMatrix::identity(self.dof(), self.dof()));
         };
@@ -58,32 +61,46 @@ impl Mechanism {
             let rates = rates_per_velocity(leg, &self.home.joints[range.clone()])? * velocities;
             all.rows_mut(range.start, range.len()).copy_from(&rates);
         }
-        Some(all.select_rows(&self.actuated()))
+        Some(all)
     }
 
-    /// The first actuators that are independent at home: r of them, or fewer if all together do not
-    /// determine the platform's motion.
+    /// The first actuators that determine the platform's motion at home, well conditioned if there are
+    /// such: r of them, or fewer if all together do not determine it.
     #[must_use]
     pub fn independent_actuators(&self) -> Vec<usize> {
-        let Some(jacobian) = self.inverse_jacobian_at_home() else {
+        let Some(rates) = self.rates_at_home() else {
             return Vec::new();
         };
-        let mut basis: Vec<DVector<f64>> = Vec::new();
-        let mut chosen = Vec::new();
-        for (actuator, row) in jacobian.row_iter().enumerate() {
-            let row = row.transpose();
-            let mut rest = row.clone();
-            // Twice removes what rounding left of the first time.
-            for _ in 0..2 {
-                for known in &basis {
-                    rest -= known * known.dot(&rest);
-                }
-            }
-            if chosen.len() < self.dof() && rest.norm() > DEPENDENT * row.norm() {
-                basis.push(rest.normalize());
-                chosen.push(actuator);
+        let jacobian = rates.select_rows(&self.actuated());
+        let least = ROUNDING * rates.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
+        let [well, at_all] = DEPENDENT.map(|limit| independent_rows(&jacobian, least, limit));
+        if well.len() == self.dof() {
+            well
+        } else {
+            at_all
+        }
+    }
+}
+
+/// The first rows that are independent: longer than `least`, and with more than a part `limit` of their
+/// length outside the span of those before.
+fn independent_rows(matrix: &DMatrix<f64>, least: f64, limit: f64) -> Vec<usize> {
+    let mut basis: Vec<DVector<f64>> = Vec::new();
+    let mut chosen = Vec::new();
+    for (index, row) in matrix.row_iter().enumerate() {
+        let row = row.transpose();
+        let mut rest = row.clone();
+        // Twice removes what rounding left of the first time.
+        for _ in 0..2 {
+            for known in &basis {
+                rest -= known * known.dot(&rest);
             }
         }
-        chosen
+        let is_new = row.norm() > least && rest.norm() > limit * row.norm();
+        if is_new && chosen.len() < matrix.ncols() {
+            basis.push(rest.normalize());
+            chosen.push(index);
+        }
     }
+    chosen
 }

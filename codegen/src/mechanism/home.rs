@@ -70,6 +70,9 @@ pub enum HomeError {
 const CLOSED: f64 = 1e-10;
 /// Condition number of a leg's Jacobian above which the leg counts as singular.
 const SINGULAR: f64 = 1e7;
+/// Largest entry of the shared rows of a leg's Jacobian, relative to that of all rows, below which the
+/// shared rows are zero.
+const ROUNDING: f64 = 1e-10;
 const STEPS: usize = 200;
 
 impl Home {
@@ -153,7 +156,15 @@ fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
-    let condition = condition(&leg.closure_jacobian(&q));
+    let jacobian = leg.closure_jacobian(&q);
+    // An end that does not move along the axes that it shares has rounding for a Jacobian, which may be
+    // well conditioned.
+    let is_rounding = jacobian.amax() < ROUNDING * leg.end_jacobian(&q).amax();
+    let condition = if is_rounding {
+        f64::INFINITY
+    } else {
+        condition(&jacobian)
+    };
     if q.len() > leg.shared_components().len() || condition.is_nan() || condition >= SINGULAR {
         return Err(Failure::Singular(condition));
     }

@@ -8,6 +8,10 @@ use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use std::fmt;
 
+/// Largest entry of a matrix that is zero but for rounding: inputs of about one, SI units, give no
+/// results as small as this.
+const ZERO: f64 = 1e-12;
+
 /// The worst differences seen so far.
 #[derive(Clone, Debug, Default)]
 pub struct Agreement {
@@ -37,7 +41,9 @@ impl Agreement {
             self.matrix = f64::INFINITY;
             return;
         }
-        self.matrix = self.matrix.max(relative_difference(found, expected));
+        if found.amax().max(expected.amax()) > ZERO {
+            self.matrix = self.matrix.max(relative_difference(found, expected));
+        }
         larger(&mut self.differences, (found - expected).abs());
         larger(&mut self.magnitudes, expected.abs());
     }
@@ -55,7 +61,7 @@ impl Agreement {
         let (Some(differences), Some(magnitudes)) = (&self.differences, &self.magnitudes) else {
             return self.matrix;
         };
-        let rounding = 1e-12 * magnitudes.amax();
+        let rounding = (1e-12 * magnitudes.amax()).max(ZERO);
         let relative = |difference: &f64, magnitude: &f64| {
             if *magnitude > rounding {
                 difference / magnitude

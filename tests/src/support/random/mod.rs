@@ -20,7 +20,7 @@ mod text;
 pub use defect::Defect;
 pub use dice::Dice;
 
-use crate::reference::linear::condition;
+use crate::reference::linear::{condition, singular_values};
 use crate::reference::states::MAX_CONDITION;
 use crate::reference::{Joint, JointKind, Motion, State};
 use leg::{Structure, draw_shape};
@@ -199,7 +199,11 @@ impl Sketch {
         let state = State::solve(&mechanism, &mechanism.home, &still, &still);
         let jacobians = state.and_then(|state| state.jacobians(&mechanism));
         jacobians.is_ok_and(|j| {
-            j.worst_leg_condition(&mechanism) < MAX_CONDITION / 3.0
+            let least = |matrix| singular_values(matrix).min() * MAX_CONDITION;
+            // A single joint or coordinate has no condition number: what tells is the size.
+            least(&j.legs) > 1.0
+                && least(&j.inverse) > 1.0
+                && j.worst_leg_condition(&mechanism) < MAX_CONDITION / 3.0
                 && condition(&j.inverse) < MAX_CONDITION / 3.0
                 && condition(&j.a_p) < MAX_CONDITION / 2.0
         })
@@ -211,11 +215,13 @@ impl Sketch {
         let still = DVector::zeros(mechanism.dof());
         let state = State::solve(&mechanism, &mechanism.home, &still, &still).ok()?;
         let inverse = state.jacobians(&mechanism).ok()?.inverse;
+        let largest = singular_values(&inverse).max();
         let mut order: Vec<usize> = (0..inverse.nrows()).collect();
         (0..20).find_map(|_| {
             dice.shuffle(&mut order);
             let kept = &order[..inverse.ncols()];
-            let regular = condition(&inverse.select_rows(kept)) < MAX_CONDITION;
+            let values = singular_values(&inverse.select_rows(kept));
+            let regular = values.min() > largest / MAX_CONDITION;
             regular.then(|| kept.to_vec())
         })
     }
