@@ -5,7 +5,7 @@ use crate::{
     failure::{Failure, Problem},
 };
 use overact_codegen::{
-    Request, RobotModel, compile_with,
+    Effort, Request, RobotModel, compile_with,
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
@@ -30,14 +30,15 @@ pub fn load(path: &Path) -> Result<Robot, Failure> {
     load_with(path, &Request::default())
 }
 
-/// The same with the functions only that an [`InterpretedRobot`] serves.
+/// The same with the functions only that an [`InterpretedRobot`] serves. The few operations that a
+/// search would spare take less time than the search.
 ///
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load_to_serve(path: &Path) -> Result<Robot, Failure> {
     let request = Request {
         wanted: &InterpretedRobot::serves,
-        ..Request::default()
+        ..Request::with_effort(Effort::None)
     };
     load_with(path, &request)
 }

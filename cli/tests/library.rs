@@ -40,7 +40,14 @@ fn all_are_checked() {
 fn all_are_inspected_drawn_and_evaluated() {
     let bench = Bench::new();
     for name in robots() {
-        let document = bench.json(&["inspect", &file(&name), "--svg", "drawing.svg"]);
+        let document = bench.json(&[
+            "inspect",
+            &file(&name),
+            "--effort",
+            "none",
+            "--svg",
+            "drawing.svg",
+        ]);
         assert_regroupings(&name, &document);
         for function in list(&document["functions"]) {
             assert!(function["operations"].is_u64(), "{name}: {function}");
@@ -194,7 +201,7 @@ fn all_are_generated() {
     let bench = Bench::new();
     let robots = robots();
     let files: Vec<String> = robots.iter().map(|name| file(name)).collect();
-    let mut arguments = vec!["generate", "-o", "out/"];
+    let mut arguments = vec!["generate", "--effort", "none", "-o", "out/"];
     arguments.extend(files.iter().map(String::as_str));
     bench.good(&arguments);
     for name in robots {

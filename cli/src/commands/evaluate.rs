@@ -12,7 +12,7 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact_codegen::{
-    Request, RobotModel,
+    Effort, Request, RobotModel,
     compile::model_with,
     derivation::{Columns, Family, From},
     evaluation::{Rows, Workspace},
@@ -109,7 +109,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let request = Request {
         wanted: &wanted,
-        ..Request::default()
+        ..Request::with_effort(Effort::None)
     };
     let Robot { mut model, .. } = load_with(&arguments.file, &request)?;
     let states = States::read(&arguments.states)?;

@@ -1,0 +1,134 @@
+//! The tutorial: its blocks make the robot, its commands print what it shows.
+//!
+//! Blocks of TOML are appended to `rrr.toml` in their order. The commands of a console block run in a
+//! shell in the same folder; a line `…` stands for any lines, and numbers may differ in their last
+//! digits from one machine to another.
+#![cfg(unix)]
+
+mod common;
+
+use common::Bench;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// A fenced block: its language and its lines.
+struct Block<'t> {
+    language: &'t str,
+    lines: Vec<&'t str>,
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs")
+}
+
+fn blocks(text: &str) -> Vec<Block<'_>> {
+    let mut blocks: Vec<Block<'_>> = Vec::new();
+    let mut is_open = false;
+    for line in text.lines() {
+        match (line.strip_prefix("```"), is_open) {
+            (Some(language), false) => blocks.push(Block {
+                language,
+                lines: Vec::new(),
+            }),
+            (Some(_), true) | (None, false) => {}
+            (None, true) => blocks.last_mut().expect("an open block").lines.push(line),
+        }
+        is_open ^= line.starts_with("```");
+    }
+    assert!(!is_open, "the last block is not closed");
+    blocks
+}
+
+/// What a shell prints for a command, errors included.
+fn run(bench: &Bench, command: &str) -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_overact"));
+    let folder = program.parent().expect("a folder");
+    let path = std::env::var("PATH").unwrap_or_default();
+    let output = Command::new("sh")
+        .args(["-c", &format!("{command} 2>&1")])
+        .current_dir(bench.path("."))
+        .env("PATH", format!("{}:{path}", folder.display()))
+        .output()
+        .expect("a shell");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// Whether a printed line is the shown one: word by word, numbers to two digits.
+fn is_same(shown: &str, printed: &str) -> bool {
+    fn words(line: &str) -> Vec<&str> {
+        let words = line.split(|c: char| c.is_whitespace() || c == ',');
+        words.filter(|word| !word.is_empty()).collect()
+    }
+    let (shown, printed) = (words(shown), words(printed));
+    let near = |(a, b): (&&str, &&str)| match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => (a - b).abs() <= 0.02 * a.abs().max(b.abs()),
+        _ => a == b,
+    };
+    shown.len() == printed.len() && shown.iter().zip(&printed).all(near)
+}
+
+/// Whether the shown lines are the printed ones, where `…` stands for any.
+fn matches(shown: &[&str], printed: &[&str]) -> bool {
+    match (shown, printed) {
+        ([], rest) => rest.is_empty(),
+        (["…", shown @ ..], _) => {
+            (0..=printed.len()).any(|skip| matches(shown, &printed[skip..]))
+        }
+        ([first, shown @ ..], [line, printed @ ..]) => {
+            is_same(first, line) && matches(shown, printed)
+        }
+        (_, []) => false,
+    }
+}
+
+#[test]
+fn the_tutorial_does_what_it_says() {
+    let text = fs::read_to_string(docs().join("tutorial.md")).expect("the tutorial");
+    let bench = Bench::new();
+    let mut robot = String::new();
+    let mut commands = 0;
+    for block in blocks(&text) {
+        match block.language {
+            "toml" => {
+                robot += &(block.lines.join("\n") + "\n");
+                bench.write("rrr.toml", &robot);
+            }
+            "console" => {
+                for part in block.lines.join("\n").split("$ ").skip(1) {
+                    let (command, shown) = part.split_once('\n').unwrap_or((part, ""));
+                    let printed = run(&bench, command);
+                    let shown: Vec<&str> = shown.trim_end().lines().collect();
+                    let lines: Vec<&str> = printed.trim_end().lines().collect();
+                    assert!(
+                        matches(&shown, &lines),
+                        "$ {command}\n{printed}\nis not\n{}",
+                        shown.join("\n")
+                    );
+                    commands += 1;
+                }
+            }
+            _ => {}
+        }
+    }
+    assert!(commands > 10, "{commands} commands");
+    let drawing = fs::read_to_string(docs().join("tutorial.svg")).unwrap_or_default();
+    assert!(
+        drawing == bench.read("rrr.svg"),
+        "renew docs/tutorial.svg with what the tutorial's `inspect` draws"
+    );
+    // Beyond what is shown: the whole robot generates.
+    bench.good(&["generate", "--effort", "none", "rrr.toml", "-o", "all.rs"]);
+    assert!(bench.read("all.rs").contains("pub struct Rrr"));
+}
+
+#[test]
+fn lines_are_compared_by_their_numbers() {
+    assert!(is_same("a 1.00, b", "a  1.001, b") && !is_same("a 1.0", "a 1.1"));
+    assert!(!is_same("a 1.0 m", "a 1.0"));
+    assert!(matches(&["a", "…", "d"], &["a", "b", "c", "d"]));
+    assert!(!matches(&["a", "…", "d"], &["a", "d", "c"]));
+    assert!(!matches(&["a"], &["a", "b"]));
+}
