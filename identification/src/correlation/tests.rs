@@ -95,12 +95,9 @@ fn deviations_are_those_of_many_repetitions() {
         let ratio = |of: [f64; 3]| [0, 1, 2].map(|i| (of[i] / errors[i]).sqrt());
         let (white, correlated) = (ratio(white), ratio(correlated));
         println!("a = {a}: white {white:.2?}, correlated {correlated:.2?} of the true deviations");
-        for i in 0..3 {
-            assert!(
-                (0.7..1.35).contains(&correlated[i]),
-                "{a} {i}: {}",
-                correlated[i]
-            );
+        for ratio in correlated {
+            // The constant suffers most: both lines have a part of the lowest frequency.
+            assert!((0.7..1.35).contains(&ratio), "{a}: {ratio}");
         }
         if a > 0.0 {
             // The constant and the slow column suffer from slow residuals.

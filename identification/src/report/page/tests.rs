@@ -73,6 +73,7 @@ fn removal(name: &str, accepted: bool) -> Removal {
             parameter: HOSTILE.to_owned(),
             percent: 3.0,
             deviations: 0.5,
+            inputs_percent: 3.0,
         }),
         accepted,
         reason: String::from("it is <needless>"),
