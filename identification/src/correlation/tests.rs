@@ -60,6 +60,7 @@ fn settings() -> Settings {
         decimation: 1,
         skip_start: 0,
         skip_end: 0,
+        velocity_dead_band: 0.0,
         r_sigma: 10.0,
         keep_significant: false,
         normalisation: Normalisation::Unbiased,

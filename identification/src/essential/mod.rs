@@ -83,7 +83,7 @@ pub struct Drift {
     pub percent: f64,
     /// |change|/σ of the base estimate under correlated residuals.
     pub deviations: f64,
-    /// 100 ||column|| |change|/||inputs||, in the line of Γ where that is largest.
+    /// 100 ||column|| |change|/||inputs||.
     pub inputs_percent: f64,
 }
 
@@ -194,7 +194,7 @@ struct Known {
     column: usize,
     value: f64,
     deviation: f64,
-    /// The norm of its column by that of the inputs, in the line where that is largest.
+    /// The norm of its column by that of the inputs.
     influence: f64,
 }
 
@@ -342,17 +342,18 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The norm of a column by that of the inputs, in the line where that is largest.
+/// The norm of a column by that of the inputs.
 fn influence(system: &System, column: usize) -> f64 {
-    let of_line = |line: &Factor| {
-        let measured = line.measured_norm();
-        if measured > 0.0 {
-            line.matrix().column(column).norm() / measured
-        } else {
-            0.0
-        }
+    let norm = |of: &dyn Fn(&Factor) -> f64| {
+        let squares = system.lines.iter().map(|line| of(line).powi(2));
+        squares.sum::<f64>().sqrt()
     };
-    system.lines.iter().map(of_line).fold(0.0, f64::max)
+    let measured = norm(&Factor::measured_norm);
+    if measured > 0.0 {
+        norm(&|line| line.matrix().column(column).norm()) / measured
+    } else {
+        0.0
+    }
 }
 
 /// Deviations under correlated residuals where they are known, else under white ones.

@@ -194,6 +194,7 @@ fn settings() -> Settings {
         filter_cutoff_hz: 100.0,
         decimation: 50,
         skip_start: 0,
+        velocity_dead_band: 0.0,
         skip_end: 0,
         r_sigma: 10.0,
         keep_significant: true,
