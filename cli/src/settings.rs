@@ -12,12 +12,13 @@ use overact_identification::{Gain, Mapping, Settings};
 pub(crate) fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settings {
     let table = &robot.description.identification;
     let usual = Settings::for_sampling_frequency(frequency, info);
-    Settings {
+    let settings = Settings {
         filter_order: table.filter_order,
         filter_cutoff_hz: table.filter_cutoff.unwrap_or(usual.filter_cutoff_hz),
         decimation: table.decimation.unwrap_or(usual.decimation),
-        skip_start: table.skip_start,
-        skip_end: table.skip_end,
+        skip_start: table.skip_start.unwrap_or(0),
+        skip_end: table.skip_end.unwrap_or(0),
+        velocity_dead_band: table.velocity_dead_band,
         // Without essential parameters the elimination ends before it starts.
         r_sigma: if table.essential {
             table.r_sigma
@@ -31,6 +32,11 @@ pub(crate) fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settin
         asymmetric_friction: table.friction == Friction::Asymmetric,
         weighted: table.weighted,
         ..usual
+    };
+    if table.skip_start.is_none() && table.skip_end.is_none() {
+        settings.trimmed(frequency)
+    } else {
+        settings
     }
 }
 

@@ -4,6 +4,9 @@
 //! With asymmetric friction the columns fv, fs and off of a joint become fv_pos, fs_pos, fv_neg and
 //! fs_neg: the columns fv and fs where the joint's velocity is positive or negative, zero
 //! elsewhere. The offset is (fs_pos - fs_neg)/2 then and has no column of its own.
+//!
+//! Around standstill the sign of a measured velocity is noise. Within a dead band the columns fs can
+//! be zero.
 
 use overact::{Body, Function, Model, Parameter, SampleError, Symbol};
 
@@ -51,6 +54,8 @@ pub struct Column {
     pub body: Body,
     /// The joint, and the direction of its motion, to which a friction parameter is confined.
     pub direction: Option<(usize, Direction)>,
+    /// The joint of a Coulomb parameter and the speed below which its column is zero.
+    dead_band: Option<(usize, f64)>,
     source: Source,
 }
 
@@ -64,8 +69,28 @@ impl Column {
             symbol: parameter.symbol,
             body: parameter.body,
             direction: None,
+            dead_band: None,
             source,
         }
+    }
+
+    /// The joint on whose velocity it depends whether the column is zero.
+    fn joint(&self) -> Option<usize> {
+        let split = self.direction.map(|(joint, _)| joint);
+        split.or(self.dead_band.map(|(joint, _)| joint))
+    }
+
+    /// Whether the column is not zero at a velocity of its joint.
+    fn acts(&self, velocity: f64) -> bool {
+        let moves = self
+            .dead_band
+            .is_none_or(|(_, band)| velocity.abs() >= band);
+        moves
+            && match self.direction {
+                None => true,
+                Some((_, Direction::Positive)) => velocity > 0.0,
+                Some((_, Direction::Negative)) => velocity < 0.0,
+            }
     }
 
     /// The column of a friction parameter split by the direction of its joint.
@@ -129,6 +154,28 @@ impl ColumnSet {
         Ok(Self { columns })
     }
 
+    /// The same columns, those of Coulomb friction being zero where the speed of their joint is below
+    /// `band` (rad/s or m/s).
+    ///
+    /// # Errors
+    /// A friction parameter whose joint can't be recognised.
+    pub fn with_dead_band(
+        mut self,
+        model: &dyn Model,
+        band: f64,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        if band > 0.0 {
+            let joints = friction_joints(model, seed)?;
+            for column in &mut self.columns {
+                if let (Source::Robot(index), Symbol::Fs) = (column.source, column.symbol) {
+                    column.dead_band = joints[index].map(|joint| (joint, band));
+                }
+            }
+        }
+        Ok(self)
+    }
+
     /// The columns.
     #[must_use]
     pub fn as_slice(&self) -> &[Column] {
@@ -179,7 +226,7 @@ impl ColumnSet {
             Ok(output)
         };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
-        let split = columns().any(|column| column.direction.is_some());
+        let split = columns().any(|column| column.joint().is_some());
         let has_payload = columns().any(|column| matches!(column.source, Source::Payload(_)));
         let robot = ask(Function::IdmRedPlatform, true)?;
         let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
@@ -201,19 +248,14 @@ impl ColumnSet {
                 let to = rows[place..].iter_mut().step_by(width);
                 to.zip(from).for_each(|(to, from)| *to = *from);
             }
-            if let Some((joint, direction)) = column.direction {
-                let moves = velocities[joint..].iter().step_by(sizes.joints);
-                for (sample, velocity) in moves.enumerate() {
-                    let acts = match direction {
-                        Direction::Positive => *velocity > 0.0,
-                        Direction::Negative => *velocity < 0.0,
-                    };
-                    if !acts {
-                        lines
-                            .iter_mut()
-                            .for_each(|rows| rows[sample * width + place] = 0.0);
-                    }
-                }
+            let Some(joint) = column.joint() else {
+                continue;
+            };
+            let rates = velocities[joint..].iter().step_by(sizes.joints);
+            for (sample, _) in rates.enumerate().filter(|(_, rate)| !column.acts(**rate)) {
+                lines
+                    .iter_mut()
+                    .for_each(|rows| rows[sample * width + place] = 0.0);
             }
         }
         Ok(lines)

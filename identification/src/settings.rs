@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Problem},
-    filters::DECIMATION_PADDING,
+    filters::{DECIMATION_PADDING, butterworth, settling},
 };
 
 /// Decimation keeps frequencies up to this many times f_dyn.
@@ -18,6 +18,9 @@ const DECIMATION_BAND: f64 = 4.0;
 
 /// The position low-pass stays below this fraction of the Nyquist frequency.
 const LARGEST_CUTOFF: f64 = 0.8;
+
+/// Part of the position filter's transient at the ends of a run that is left in the samples used.
+const TRANSIENT: f64 = 1e-5;
 
 /// How σ_ρ of eq. (46) is computed from the residual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -45,6 +48,9 @@ pub struct Settings {
     pub skip_start: usize,
     /// Samples dropped from the end of each run after differentiation.
     pub skip_end: usize,
+    /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero: around
+    /// standstill the sign of a measured velocity is noise. 0 is no dead band.
+    pub velocity_dead_band: f64,
     /// r_σ: the elimination of parameters ends when the largest relative standard deviation is
     /// less than this many times the smallest one.
     pub r_sigma: f64,
@@ -66,7 +72,8 @@ pub struct Settings {
 impl Settings {
     /// The usual rules for a robot of bandwidth `dynamics_hz` (f_dyn) sampled at
     /// `sampling_frequency` (f_m, Hz): order 4, cutoff 10 f_dyn, decimation to 4 f_dyn.
-    /// `kept_actuators` is the description's choice.
+    /// `kept_actuators` is the description's choice. No samples are dropped, see
+    /// [`Settings::trimmed`].
     #[must_use]
     pub fn for_bandwidth(dynamics_hz: f64, sampling_frequency: f64, info: &Info<'_>) -> Self {
         let nyquist = sampling_frequency / 2.0;
@@ -83,6 +90,7 @@ impl Settings {
             decimation: decimation.max(1.0) as usize,
             skip_start: 0,
             skip_end: 0,
+            velocity_dead_band: 0.0,
             r_sigma: 10.0,
             keep_significant: false,
             normalisation: Normalisation::Unbiased,
@@ -99,6 +107,21 @@ impl Settings {
     #[must_use]
     pub fn for_sampling_frequency(sampling_frequency: f64, info: &Info<'_>) -> Self {
         Self::for_bandwidth(sampling_frequency / 100.0, sampling_frequency, info)
+    }
+
+    /// The same settings with as many samples dropped at both ends of a run as the transient of the
+    /// position filter lasts. The filter extends a run by its odd reflection, whose acceleration has
+    /// the wrong sign; how long that is felt is a property of the filter. (The decimation needs no
+    /// such care: it treats both sides of the equations alike.)
+    #[must_use]
+    pub fn trimmed(mut self, sampling_frequency: f64) -> Self {
+        // Impossible filters are found by the checks.
+        let cutoff = 2.0 * self.filter_cutoff_hz / sampling_frequency;
+        if let Ok(filter) = butterworth(self.filter_order, cutoff) {
+            self.skip_start = settling(&filter, TRANSIENT);
+            self.skip_end = self.skip_start;
+        }
+        self
     }
 
     /// Number of samples that a run must have for these settings.
@@ -136,6 +159,15 @@ impl Settings {
             problems.push(
                 Problem::new("a decimation by 0 is not possible")
                     .help("choose 1 to keep every sample"),
+            );
+        }
+        if !(self.velocity_dead_band.is_finite() && self.velocity_dead_band >= 0.0) {
+            problems.push(
+                Problem::new(format!(
+                    "the velocity dead band is {}",
+                    self.velocity_dead_band
+                ))
+                .help("choose about three times the noise of the velocities, or 0 for none"),
             );
         }
         if self.r_sigma.is_nan() || self.r_sigma <= 1.0 {

@@ -61,10 +61,13 @@ pub struct Identification {
     pub filter_cutoff: Option<f64>,
     /// One sample in so many is kept; chosen from the sampling frequency if absent.
     pub decimation: Option<usize>,
-    /// Samples dropped at the start of each run after differentiation.
-    pub skip_start: usize,
-    /// Samples dropped at the end of each run.
-    pub skip_end: usize,
+    /// Samples dropped at the start of each run after differentiation; where neither end has a
+    /// number, as many as the filter's transient lasts, else 0.
+    pub skip_start: Option<usize>,
+    /// Samples dropped at the end of each run, likewise.
+    pub skip_end: Option<usize>,
+    /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero.
+    pub velocity_dead_band: f64,
     /// Ratio of relative standard deviations at which the elimination of parameters ends.
     pub r_sigma: f64,
     /// Kept actuators of case 2, indices among all actuators; if absent, the first r that determine
@@ -157,8 +160,9 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         filter_order: 4,
         filter_cutoff: None,
         decimation: None,
-        skip_start: 0,
-        skip_end: 0,
+        skip_start: None,
+        skip_end: None,
+        velocity_dead_band: 0.0,
         r_sigma: 10.0,
         kept_actuators: None,
         normalisation: Normalisation::default(),
@@ -182,8 +186,13 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
         .get("filter_cutoff")
         .and_then(|i| i.positive(Dimension::FREQUENCY, scope));
     settings.decimation = size("decimation", 1);
-    settings.skip_start = size("skip_start", 0).unwrap_or(0);
-    settings.skip_end = size("skip_end", 0).unwrap_or(0);
+    settings.skip_start = size("skip_start", 0);
+    settings.skip_end = size("skip_end", 0);
+    if let Some(item) = table.get("velocity_dead_band") {
+        // The joints of a robot may be angles and lengths, so the number is in SI units of each.
+        let band = item.not_negative(Dimension::NONE, scope);
+        settings.velocity_dead_band = band.unwrap_or(settings.velocity_dead_band);
+    }
     if let Some(item) = table.get("r_sigma") {
         let ratio = item.positive(Dimension::NONE, scope);
         if ratio.is_some_and(|ratio| ratio <= 1.0) {

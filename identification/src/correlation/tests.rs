@@ -60,6 +60,7 @@ fn settings() -> Settings {
         decimation: 1,
         skip_start: 0,
         skip_end: 0,
+        velocity_dead_band: 0.0,
         r_sigma: 10.0,
         keep_significant: false,
         normalisation: Normalisation::Unbiased,
@@ -95,8 +96,9 @@ fn deviations_are_those_of_many_repetitions() {
         let ratio = |of: [f64; 3]| [0, 1, 2].map(|i| (of[i] / errors[i]).sqrt());
         let (white, correlated) = (ratio(white), ratio(correlated));
         println!("a = {a}: white {white:.2?}, correlated {correlated:.2?} of the true deviations");
-        for (i, ratio) in correlated.iter().enumerate() {
-            assert!((0.7..1.35).contains(ratio), "{a} {i}: {ratio}");
+        for ratio in correlated {
+            // The constant suffers most: both lines have a part of the lowest frequency.
+            assert!((0.7..1.35).contains(&ratio), "{a}: {ratio}");
         }
         if a > 0.0 {
             // The constant and the slow column suffer from slow residuals.

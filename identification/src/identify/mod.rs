@@ -143,6 +143,8 @@ pub fn prepare(
         settings.seed,
     )?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
+    // Relations between columns are those of the model; the dead band is one of the data.
+    let columns = columns.with_dead_band(model, settings.velocity_dead_band, settings.seed)?;
     let observer = Observer {
         model,
         columns: &columns,

@@ -240,7 +240,7 @@ fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) ->
     }
     let significant: Vec<String> = removals
         .iter()
-        .filter(|removal| removal.significant)
+        .filter(|removal| removal.significant && removal.accepted)
         .map(|removal| {
             let deviation = removal.relative_standard_deviation_percent;
             format!("`{}` to {deviation:.1} %", removal.name)

@@ -67,10 +67,12 @@ pub struct Thresholds {
     /// |χ|/σ above which a parameter is significant.
     pub significance: f64,
     /// Growth of the held-out error, in percent of the measured inputs' norm, above which a
-    /// significant parameter is not cancelled.
+    /// significant parameter is not cancelled: the root of the difference of the squares before and
+    /// after, the part of the inputs that the parameter alone explains, whatever the noise.
     pub held_out_growth_percent: f64,
     /// Move of another parameter, percent of its value, above which a significant parameter is not
-    /// cancelled.
+    /// cancelled, provided that the move's part of the inputs exceeds
+    /// [`held_out_growth_percent`](Self::held_out_growth_percent).
     pub drift_percent: f64,
 }
 

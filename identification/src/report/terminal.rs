@@ -214,10 +214,27 @@ fn quality(estimate: &Estimate) -> String {
                 significant(removal.deviation_ratio, 4),
                 format!("{:.4}", removal.relative_error_before_percent),
                 format!("{:.4}", removal.relative_error_after_percent),
+                removal
+                    .held_out_after_percent
+                    .map_or_else(|| String::from("-"), |percent| format!("{percent:.4}")),
+                significant(removal.f_statistic.sqrt(), 3),
+                String::from(if removal.accepted { "" } else { "kept" }),
             ]
         });
-        let header = ["cancelled", "% sigma", "max/min", "error % before", "after"];
+        let header = [
+            "cancelled",
+            "% sigma",
+            "max/min",
+            "error % before",
+            "after",
+            "held out",
+            "|value|/sigma",
+            "",
+        ];
         text.push_str(&table(&header, rows.collect()));
+    }
+    if let Some(stop) = &estimate.stop {
+        let _ = writeln!(text, "the elimination ended: {stop}");
     }
     text
 }

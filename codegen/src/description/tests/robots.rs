@@ -105,7 +105,10 @@ fn the_emps_slides_horizontally() {
     assert_eq!(data.torque_gain, [Factor::Variable("gtau".to_owned())]);
     assert_eq!(data.position_scale, [Factor::Value(1.0)]);
     let settings = robot.identification;
-    assert_eq!((settings.decimation, settings.skip_start), (Some(10), 49));
+    assert_eq!(
+        (settings.decimation, settings.skip_start),
+        (Some(10), Some(49))
+    );
     assert_eq!(settings.normalisation, Normalisation::MinusOne);
     assert!(!settings.weighted && !settings.essential);
 }

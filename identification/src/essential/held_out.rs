@@ -1,0 +1,99 @@
+//! Cross-validation inside the data: each fold is predicted from all others.
+//!
+//! A fold is a run, where the other runs determine the parameters without it; else it is the same part
+//! of every run. From R factors, a fold costs one small factorisation, however long the runs are.
+
+use crate::{
+    elimination::eliminate,
+    estimate::{DATA_RANK_TOLERANCE, percent},
+    factor::Factor,
+    regression::{Part, System},
+};
+
+/// The folds of a system.
+pub(super) struct HeldOut {
+    folds: Vec<Fold>,
+    /// ||Y|| of all folds.
+    measured: f64,
+}
+
+/// Data that are held out, and all others.
+struct Fold {
+    /// Equations of the lines together, unweighted.
+    own: Factor,
+    /// The others', weighted.
+    others: Factor,
+}
+
+impl HeldOut {
+    /// The folds of a system whose lines have the given weights; none where the columns `selected` are
+    /// not determined without one of them.
+    pub(super) fn new(system: &System, selected: &[usize], weights: &[f64]) -> Option<Self> {
+        let runs: Vec<usize> = system.parts.iter().map(|part| part.run).collect();
+        // The number of each part within its run.
+        let parts: Vec<usize> = (0..runs.len())
+            .map(|part| {
+                runs[..part]
+                    .iter()
+                    .filter(|run| **run == runs[part])
+                    .count()
+            })
+            .collect();
+        let by_label = |labels: &[usize]| Self::labelled(system, selected, weights, labels);
+        by_label(&runs).or_else(|| by_label(&parts))
+    }
+
+    /// Folds of the parts with equal labels.
+    fn labelled(
+        system: &System,
+        selected: &[usize],
+        weights: &[f64],
+        labels: &[usize],
+    ) -> Option<Self> {
+        let count = labels.iter().max()? + 1;
+        if count < 2 {
+            return None;
+        }
+        let ones = vec![1.0; weights.len()];
+        let merged = |label: usize, held: bool, weights: &[f64]| -> Option<Factor> {
+            let parts = system.parts.iter().zip(labels);
+            let chosen: Vec<&Part> = parts
+                .filter(|(_, own)| (**own == label) == held)
+                .map(|(part, _)| part)
+                .collect();
+            let mut sum = Factor::new(system.lines.first()?.parameters());
+            for part in chosen {
+                sum.add(&Factor::merged(&part.lines, weights));
+            }
+            Some(sum)
+        };
+        let mut folds = Vec::new();
+        for label in 0..count {
+            let others = merged(label, false, weights)?;
+            let determined = eliminate(others.matrix(), selected, DATA_RANK_TOLERANCE).kept;
+            if determined.len() < selected.len() {
+                return None;
+            }
+            folds.push(Fold {
+                own: merged(label, true, &ones)?,
+                others,
+            });
+        }
+        let squares = folds.iter().map(|fold| fold.own.measured_norm().powi(2));
+        Some(Self {
+            measured: squares.sum::<f64>().sqrt(),
+            folds,
+        })
+    }
+
+    /// 100 ||Y - W χ||/||Y|| over all folds, χ being estimated from the others each time.
+    pub(super) fn error_percent(&self, selected: &[usize]) -> Option<f64> {
+        let mut squares = 0.0;
+        for fold in &self.folds {
+            let reduced = fold.others.reduced(selected);
+            let values = reduced.triangle.solve_upper_triangular(&reduced.rhs)?;
+            squares += fold.own.residual_norm(selected, values.as_slice()).powi(2);
+        }
+        Some(percent(squares.sqrt(), self.measured))
+    }
+}

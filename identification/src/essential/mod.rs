@@ -1,0 +1,365 @@
+//! Essential parameters: backward elimination of the base parameters that the data do not
+//! determine, section 5.3 of the paper, with a second opinion.
+//!
+//! The parameter of the largest relative standard deviation is cancelled and the rest estimated
+//! anew, until max σ_r/min σ_r < r_σ. The rule can walk past the right model: with weak excitation
+//! it goes on cancelling parameters that the data do determine, while the relative error stays
+//! harmless. So every step is judged twice:
+//!
+//! - *Significance*: F = (χ/σ)² is the statistic of the test that the parameter is zero, σ being the
+//!   deviation under correlated residuals (as many as there are, not as many as independent ones would
+//!   be). Above the square of the threshold the data speak clearly for the parameter.
+//! - *Consequence*: a significant parameter may still be small (friction of a light robot). It matters
+//!   when without it data that were held out, whole runs where there are enough of them, are predicted
+//!   worse, or when another parameter moves away from its base estimate to make up for it, so far that
+//!   the inputs feel it.
+//!
+//! A significant parameter that matters is not cancelled, and the elimination ends there. The path is
+//! recorded as far as r_σ alone would go, so that both ends can be compared.
+
+mod held_out;
+
+use serde::Serialize;
+
+use crate::{
+    correlation::Noise,
+    error::Error,
+    estimate::{Estimation, estimate},
+    factor::Factor,
+    identify::verdict::Thresholds,
+    regression::System,
+    settings::Settings,
+};
+
+use held_out::HeldOut;
+
+/// Relative error in percent below which the fit is exact but for rounding, and deviations are
+/// rounding, too.
+const EXACT_PERCENT: f64 = 1e-7;
+
+/// One step of the elimination.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Removal {
+    /// Name of the cancelled parameter.
+    pub name: String,
+    /// Its column.
+    #[serde(skip)]
+    pub column: usize,
+    /// Its last estimate (SI units).
+    pub value: f64,
+    /// Its relative standard deviation, percent.
+    pub relative_standard_deviation_percent: f64,
+    /// max σ_r/min σ_r before the step.
+    pub deviation_ratio: f64,
+    /// ||ρ||/||Y|| before the step, percent.
+    pub relative_error_before_percent: f64,
+    /// ||ρ||/||Y|| after the step, percent.
+    pub relative_error_after_percent: f64,
+    /// F statistic of the cancellation, (χ/σ)² with the σ of correlated residuals.
+    pub f_statistic: f64,
+    /// Whether the parameter was significant all the same: F above the square of the threshold.
+    pub significant: bool,
+    /// ||ρ||/||Y|| on parts of the data that were not estimated from, before the step, percent; none
+    /// where the data can't be divided.
+    pub held_out_before_percent: Option<f64>,
+    /// The same after the step.
+    pub held_out_after_percent: Option<f64>,
+    /// The remaining parameter that the step moves most, seen from the base estimate and counted in
+    /// units of the tolerance.
+    pub drift: Option<Drift>,
+    /// Whether the step was taken. Behind the first one that was refused stand those that r_σ alone
+    /// would have taken, too.
+    pub accepted: bool,
+    /// Why it was taken or refused, in words.
+    pub reason: String,
+}
+
+/// How far a step of the elimination leads a remaining parameter from its base estimate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Drift {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// 100 |change|/|base estimate|.
+    pub percent: f64,
+    /// |change|/σ of the base estimate under correlated residuals.
+    pub deviations: f64,
+    /// 100 ||column|| |change|/||inputs||.
+    pub inputs_percent: f64,
+}
+
+/// The essential parameters and the way to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Essential {
+    /// Columns that are left, in the order of the base parameters.
+    pub selected: Vec<usize>,
+    /// Their names.
+    pub names: Vec<String>,
+    /// Their estimates.
+    pub estimation: Estimation,
+    /// What was cancelled, in order, and the step that was refused, if one was.
+    pub removals: Vec<Removal>,
+    /// Why the elimination ended, in words.
+    pub stop: String,
+}
+
+/// Eliminates parameters, starting from the estimation `start` of the columns `selected` with
+/// their `names`.
+///
+/// # Errors
+/// An estimation that is not possible.
+pub fn essential(
+    system: &System,
+    selected: &[usize],
+    names: &[String],
+    start: &Estimation,
+    settings: &Settings,
+) -> Result<Essential, Error> {
+    let walk = Walk::new(system, selected, names, start, settings);
+    let mut here = Place {
+        held_out: walk.held_out(selected),
+        selected: selected.to_vec(),
+        names: names.to_vec(),
+        estimation: start.clone(),
+    };
+    let mut end = None;
+    let mut removals: Vec<Removal> = Vec::new();
+    while let Some(worst) = walk.worst(&here) {
+        let next = walk.without(&here, worst)?;
+        let mut removal = walk.removal(&here, worst, &next);
+        if end.is_some() {
+            removal.accepted = false;
+            removal.reason = String::from("only r_σ alone would have come here");
+        } else if !removal.accepted {
+            end = Some(here);
+        }
+        removals.push(removal);
+        here = next;
+    }
+    let stop = stop(&removals, &here, settings);
+    let end = end.unwrap_or(here);
+    Ok(Essential {
+        selected: end.selected,
+        names: end.names,
+        estimation: end.estimation,
+        removals,
+        stop,
+    })
+}
+
+/// Why the elimination ended, in words; `last` is where r_σ alone ends.
+fn stop(removals: &[Removal], last: &Place, settings: &Settings) -> String {
+    let refused = removals.iter().find(|removal| !removal.accepted);
+    match refused {
+        Some(refused) => format!(
+            "the second opinion keeps `{}`: {}; r_σ = {} alone would have ended at {} parameter{}",
+            refused.name,
+            refused.reason,
+            settings.r_sigma,
+            last.selected.len(),
+            if last.selected.len() == 1 { "" } else { "s" }
+        ),
+        None if last.estimation.relative_error_percent <= EXACT_PERCENT => {
+            String::from("the model fits exactly")
+        }
+        None if last.selected.len() == 1 => String::from("a single parameter is left"),
+        None => format!(
+            "the largest relative deviation is {:.3} times the smallest one, less than r_σ = {}",
+            last.estimation.deviation_ratio(),
+            settings.r_sigma
+        ),
+    }
+}
+
+/// Where the elimination is.
+struct Place {
+    selected: Vec<usize>,
+    names: Vec<String>,
+    estimation: Estimation,
+    held_out: Option<f64>,
+}
+
+/// What all steps share.
+struct Walk<'a> {
+    system: &'a System,
+    settings: &'a Settings,
+    thresholds: Thresholds,
+    noise: Option<Noise>,
+    folds: Option<HeldOut>,
+    /// The base parameters that are significant.
+    base: Vec<Known>,
+}
+
+/// A base parameter that is significant.
+struct Known {
+    column: usize,
+    value: f64,
+    deviation: f64,
+    /// The norm of its column by that of the inputs.
+    influence: f64,
+}
+
+impl<'a> Walk<'a> {
+    fn new(
+        system: &'a System,
+        selected: &[usize],
+        names: &[String],
+        start: &Estimation,
+        settings: &'a Settings,
+    ) -> Self {
+        debug_assert_eq!(selected.len(), names.len());
+        let thresholds = Thresholds::default();
+        let noise = Noise::new(system, selected, start);
+        let deviations = deviations(noise.as_ref(), selected, start);
+        let all = selected.iter().zip(&start.values).zip(deviations);
+        let base = all.map(|((&column, &value), deviation)| Known {
+            column,
+            value,
+            deviation,
+            influence: influence(system, column),
+        });
+        Self {
+            base: base
+                .filter(|one| one.value.abs() > thresholds.significance * one.deviation)
+                .collect(),
+            folds: HeldOut::new(system, selected, &start.weights),
+            system,
+            settings,
+            thresholds,
+            noise,
+        }
+    }
+
+    /// The error on held-out data of the model with these columns, percent.
+    fn held_out(&self, selected: &[usize]) -> Option<f64> {
+        self.folds.as_ref()?.error_percent(selected)
+    }
+
+    /// The parameter that r_σ would cancel next, or `None` at its stop.
+    fn worst(&self, here: &Place) -> Option<usize> {
+        let estimation = &here.estimation;
+        if here.selected.len() < 2
+            || estimation.relative_error_percent <= EXACT_PERCENT
+            || estimation.deviation_ratio() < self.settings.r_sigma
+        {
+            return None;
+        }
+        let deviations = estimation.relative_standard_deviations_percent.iter();
+        let largest = deviations.enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        largest.map(|(worst, _)| worst)
+    }
+
+    /// The place without one of the parameters.
+    fn without(&self, here: &Place, worst: usize) -> Result<Place, Error> {
+        let (mut selected, mut names) = (here.selected.clone(), here.names.clone());
+        selected.remove(worst);
+        names.remove(worst);
+        Ok(Place {
+            estimation: estimate(self.system, &selected, self.settings)?,
+            held_out: self.held_out(&selected),
+            selected,
+            names,
+        })
+    }
+
+    /// The step from one place to the next, judged.
+    fn removal(&self, here: &Place, worst: usize, next: &Place) -> Removal {
+        let (estimation, rest) = (&here.estimation, &next.estimation);
+        let value = estimation.values[worst];
+        let own = deviations(self.noise.as_ref(), &here.selected, estimation)[worst];
+        let ratio = value.abs() / own;
+        let significant = ratio > self.thresholds.significance;
+        let drift = self.drift(next);
+        // Without held-out data the data themselves have to do.
+        let (before, after) = match (here.held_out, next.held_out) {
+            (Some(before), Some(after)) => (before, after),
+            _ => (
+                estimation.relative_error_percent,
+                rest.relative_error_percent,
+            ),
+        };
+        let growth = (after * after - before * before).max(0.0).sqrt();
+        let grows = growth > self.thresholds.held_out_growth_percent;
+        let moved = drift.as_ref().filter(|drift| self.measure(drift) > 1.0);
+        let matters = grows || moved.is_some() || self.settings.keep_significant;
+        let reason = if !significant {
+            format!("the data do not speak for it: |χ|/σ = {ratio:.1}")
+        } else if let (false, Some(drift)) = (grows, moved) {
+            format!(
+                "the data speak for it, |χ|/σ = {ratio:.0}, and without it `{}` would move by {:.0} %",
+                drift.parameter, drift.percent
+            )
+        } else if matters {
+            format!(
+                "the data speak for it, |χ|/σ = {ratio:.0}, and without it another {growth:.2} % of the held-out inputs would go unexplained"
+            )
+        } else {
+            format!(
+                "the data speak for it, |χ|/σ = {ratio:.0}, but without it only another {growth:.2} % of the held-out inputs go unexplained"
+            )
+        };
+        Removal {
+            name: here.names[worst].clone(),
+            column: here.selected[worst],
+            value,
+            relative_standard_deviation_percent: estimation.relative_standard_deviations_percent
+                [worst],
+            deviation_ratio: estimation.deviation_ratio(),
+            relative_error_before_percent: estimation.relative_error_percent,
+            relative_error_after_percent: rest.relative_error_percent,
+            f_statistic: ratio * ratio,
+            significant,
+            held_out_before_percent: here.held_out,
+            held_out_after_percent: next.held_out,
+            drift,
+            accepted: !(significant && matters),
+            reason,
+        }
+    }
+
+    /// The significant parameter that is farthest from its base estimate, in units of the tolerance.
+    fn drift(&self, next: &Place) -> Option<Drift> {
+        let places = next.selected.iter().enumerate();
+        let drifts = places.filter_map(|(place, column)| {
+            let base = self.base.iter().find(|base| base.column == *column)?;
+            let change = (next.estimation.values[place] - base.value).abs();
+            Some(Drift {
+                parameter: next.names[place].clone(),
+                percent: 100.0 * change / base.value.abs(),
+                deviations: change / base.deviation,
+                inputs_percent: 100.0 * change * base.influence,
+            })
+        });
+        drifts.max_by(|a, b| self.measure(a).total_cmp(&self.measure(b)))
+    }
+
+    /// A drift in units of the tolerance: it counts where it is large for the parameter, beyond the
+    /// noise, and large for the inputs.
+    fn measure(&self, drift: &Drift) -> f64 {
+        let tolerance = &self.thresholds;
+        (drift.percent / tolerance.drift_percent)
+            .min(drift.deviations / tolerance.significance)
+            .min(drift.inputs_percent / tolerance.held_out_growth_percent)
+    }
+}
+
+/// The norm of a column by that of the inputs.
+fn influence(system: &System, column: usize) -> f64 {
+    let norm = |of: &dyn Fn(&Factor) -> f64| {
+        let squares = system.lines.iter().map(|line| of(line).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let measured = norm(&Factor::measured_norm);
+    if measured > 0.0 {
+        norm(&|line| line.matrix().column(column).norm()) / measured
+    } else {
+        0.0
+    }
+}
+
+/// Deviations under correlated residuals where they are known, else under white ones.
+fn deviations(noise: Option<&Noise>, selected: &[usize], estimation: &Estimation) -> Vec<f64> {
+    noise.map_or_else(
+        || estimation.standard_deviations.clone(),
+        |noise| noise.deviations(selected, estimation),
+    )
+}

@@ -1,0 +1,87 @@
+//! The second opinion stops before the collapse that r_σ alone walks into.
+
+mod common;
+#[path = "common/dualv.rs"]
+mod dualv;
+
+use dualv::{DualV, experiment, logs, records, settings, truth};
+use overact_identification::{Estimate, Experiment, Identification, Stage, identify};
+
+fn identified(robot: &DualV, rotation: f64) -> Identification {
+    let truth = truth();
+    let runs = logs(records(robot, &experiment(robot, rotation, 1)));
+    let experiment = Experiment {
+        runs: &runs,
+        validation: &[],
+        true_values: Some(&truth),
+    };
+    identify(robot, &experiment, &settings(robot), &|_| {})
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The essential estimates of both cases.
+fn essential(result: &Identification) -> impl Iterator<Item = &Estimate> {
+    let estimates = result.estimates.iter();
+    estimates.filter(|estimate| estimate.stage == Stage::Essential)
+}
+
+const NINE: [&str; 9] = [
+    "zz_platform",
+    "m_platform",
+    "ia_1_leg1",
+    "ia_1_leg2",
+    "ia_1_leg3",
+    "ia_1_leg4",
+    "zz_payload",
+    "mx_payload",
+    "m_payload",
+];
+
+#[test]
+fn the_nine_parameters_of_table_2_are_left_whatever_the_rotation() {
+    let robot = DualV::new();
+    // Errors grow as the rotation gets weaker; with r_sigma alone they would be above 50 %.
+    for (rotation, largest) in [(1.0, 2.0), (0.15, 6.0)] {
+        let result = identified(&robot, rotation);
+        for estimate in essential(&result) {
+            println!("{}", overact_identification::report::estimate(estimate));
+            let names: Vec<&str> = estimate
+                .parameters
+                .iter()
+                .map(|p| p.name.as_str())
+                .collect();
+            assert_eq!(names, NINE, "{} {rotation}", estimate.model);
+            for parameter in &estimate.parameters {
+                let error = parameter.error_percent.expect("known").abs();
+                assert!(error < largest, "{} {rotation}: {error} %", parameter.name);
+            }
+            let steps = &estimate.removals;
+            let taken = steps.iter().filter(|step| step.accepted).count();
+            assert!(steps.iter().all(|step| !step.reason.is_empty()));
+            assert!(steps[..taken].iter().all(|step| step.accepted));
+            let stop = estimate.stop.as_deref().expect("a stop");
+            if rotation == 1.0 {
+                assert_eq!(taken, steps.len());
+                assert!(stop.contains("less than r_σ = 10"), "{stop}");
+            }
+        }
+        // Case 2 with weak rotation is where r_sigma alone walks on.
+        let case_2 = essential(&result).last().expect("case 2");
+        if rotation < 1.0 {
+            let refused = case_2
+                .removals
+                .iter()
+                .find(|step| !step.accepted)
+                .expect("a refusal");
+            assert!(refused.significant && refused.drift.is_some());
+            assert!(refused.held_out_after_percent > refused.held_out_before_percent);
+            let left = 20 - case_2.removals.len();
+            assert!(left < 9);
+            let stop = case_2.stop.as_deref().expect("a stop");
+            assert!(
+                stop.contains(&format!("alone would have ended at {left} parameters")),
+                "{stop}"
+            );
+        }
+    }
+}
