@@ -29,7 +29,14 @@ fn a_drawing_shows_legs_joints_and_platform() {
         ),
     ];
     for (name, counts) in cases {
-        bench.good(&["inspect", &robot(&format!("{name}.toml")), "--svg", "a.svg"]);
+        bench.good(&[
+            "inspect",
+            &robot(&format!("{name}.toml")),
+            "--effort",
+            "none",
+            "--svg",
+            "a.svg",
+        ]);
         let drawing = bench.read("a.svg");
         for (text, count) in counts {
             // The legend shows each symbol once more.
