@@ -21,7 +21,7 @@ use overact_tests::support::{
 const TOLERANCE: f64 = 1e-9;
 const STATES: usize = 200;
 
-#[redundant_robot("robots/branched_arm.toml")]
+#[redundant_robot("fixtures/branched_arm.toml")]
 struct BranchedArm;
 
 #[test]
@@ -50,7 +50,7 @@ fn emps() -> Result<(), Failure> {
 
 #[test]
 fn branched_arm() -> Result<(), Failure> {
-    let name = "tests/robots/branched_arm.toml";
+    let name = "tests/fixtures/branched_arm.toml";
     let text = std::fs::read_to_string(repository(name))?;
     let model = model_of(&overact_codegen::Source::new(name, text))?;
     let mechanism = reference(&model.mechanism, workspace(&model));

@@ -1,0 +1,171 @@
+//! Number of base parameters of nine structures: ranks of the standard case-1 regressor over random
+//! states.
+//!
+//! Each structure is a robot of `robots/` with three lists of parameters: all 14 of every joint and the
+//! platform's 10; the same without the inertia of massless bodies and the rotors of passive joints; and
+//! those without friction and offsets. The reference's regressor, which comes from Lagrange multipliers,
+//! and the generated one have the rank that is expected, and as many base parameters are chosen. Columns
+//! are scaled to unit length; the singular value after the last that counts is four decades smaller at
+//! least.
+
+use nalgebra::DMatrix;
+use overact_codegen::compile::{Request, model_with};
+use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::lowering::Effort;
+use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
+use overact_codegen::{description, mechanism};
+use overact_tests::support::conversion::reference;
+use overact_tests::support::description as described;
+use overact_tests::support::expected::Expected;
+use overact_tests::support::library::workspace;
+use overact_tests::support::rank::{Rank, regressor};
+use overact_tests::support::sample::samples;
+use overact_tests::support::{Failure, Sample};
+
+/// Rows per column: enough that chance leaves no singular value small.
+const ROWS: usize = 3;
+
+/// Which parameters there are.
+#[derive(Clone, Copy, Debug)]
+enum Lists {
+    /// All of every joint and of the platform.
+    All,
+    /// Without massless bodies' inertia and passive joints' rotors.
+    Real,
+    /// Of these, without friction and offsets.
+    Frictionless,
+}
+
+/// The mechanism of a description with other lists of parameters.
+fn with_lists(stem: &str, lists: Lists) -> Result<Mechanism, Failure> {
+    let source = described(stem)?;
+    let parsed = description::parse(&source);
+    let checked = parsed.and_then(|description| mechanism::check(&description));
+    let mut mechanism = checked.map_err(|errors| errors.render_plain(&source))?;
+    let joints = mechanism.legs.iter_mut().flat_map(|leg| &mut leg.joints);
+    for joint in joints {
+        let is_massless = joint.parameters.iter().all(|p| !p.is_inertial());
+        let has = |p: StandardParameter| match lists {
+            // A frame that is fixed on a body is no body of its own.
+            _ if joint.kind == JointKind::Fixed => false,
+            Lists::All => true,
+            _ if p.is_inertial() => !is_massless,
+            _ if p == StandardParameter::Ia => joint.actuated,
+            Lists::Real => true,
+            Lists::Frictionless => false,
+        };
+        joint.parameters = StandardParameter::ALL
+            .into_iter()
+            .filter(|p| has(*p))
+            .collect();
+    }
+    if let Some(platform) = &mut mechanism.platform {
+        let all = StandardParameter::ALL.into_iter();
+        platform.parameters = all.filter(|p| p.is_inertial()).collect();
+        platform.payload = None;
+    }
+    Ok(mechanism)
+}
+
+/// Compares the ranks with all three lists.
+fn check(stem: &str, expected: [usize; 3]) -> Result<(), Failure> {
+    let lists = [Lists::All, Lists::Real, Lists::Frictionless];
+    for (lists, expected) in lists.into_iter().zip(expected) {
+        let [by_reference, by_model, chosen] = ranks(stem, lists)?;
+        println!("{stem}, {lists:?}: reference {by_reference}");
+        println!(
+            "{stem}, {lists:?}: generated {by_model}; chosen {}",
+            chosen.rank
+        );
+        for rank in [by_reference, by_model] {
+            assert!(rank.is_clear(), "{stem}, {lists:?}: no clear gap: {rank}");
+        }
+        let found = [by_reference.rank, by_model.rank, chosen.rank];
+        assert_eq!(found, [expected; 3], "{stem}, {lists:?}");
+    }
+    Ok(())
+}
+
+/// Rank of the reference's regressor, of the generated one, and number of base parameters.
+fn ranks(stem: &str, lists: Lists) -> Result<[Rank; 3], Failure> {
+    let mechanism = with_lists(stem, lists)?;
+    let wanted = |_: &Mechanism, family: Family, from: From| {
+        family == Family::IdmRedPlatform(Columns::Standard) && from == From::Joints
+    };
+    let request = Request {
+        effort: Some(Effort::None),
+        wanted: &wanted,
+        ..Request::default()
+    };
+    let model = model_with(mechanism, &request).map_err(|error| format!("{error:?}"))?;
+    let plain = reference(&model.mechanism, workspace(&model));
+    let expected = Expected::by_position(&model, plain);
+    let columns = expected.parameters();
+    let count = ROWS * columns.len() / expected.mechanism.dof() + 10;
+    let all = samples(&expected.mechanism, &columns, count, 71, false)?;
+    let observed = observation(&expected, &all)?;
+    let generated = Rank::of(&regressor(&model, &all)?);
+    let chosen = Rank {
+        rank: model.base.len(),
+        ..generated
+    };
+    Ok([Rank::of(&observed), generated, chosen])
+}
+
+/// The reference's regressor over all samples: all columns of the parameters that there are.
+fn observation(expected: &Expected, all: &[Sample]) -> Result<DMatrix<f64>, Failure> {
+    let rows = expected.mechanism.dof();
+    let mut matrix = DMatrix::zeros(rows * all.len(), expected.standard.len());
+    for (at, sample) in all.iter().enumerate() {
+        let truth = expected.at(sample)?;
+        let block = truth.dynamics().idm_red_platform()?;
+        let block = block.select_columns(&expected.standard);
+        matrix.rows_mut(rows * at, rows).copy_from(&block);
+    }
+    Ok(matrix)
+}
+
+#[test]
+fn five_bar_in_a_vertical_plane() -> Result<(), Failure> {
+    check("five_bar", [25, 23, 11])
+}
+
+#[test]
+fn three_legs_to_a_point_in_a_horizontal_plane() -> Result<(), Failure> {
+    check("three_leg_point", [31, 28, 10])
+}
+
+#[test]
+fn planar_3prr() -> Result<(), Failure> {
+    check("planar_3prr", [41, 38, 13])
+}
+
+#[test]
+fn planar_4prr() -> Result<(), Failure> {
+    check("planar_4prr", [53, 49, 16])
+}
+
+#[test]
+fn delta_with_rods() -> Result<(), Failure> {
+    check("delta", [67, 61, 34])
+}
+
+#[test]
+fn six_ups() -> Result<(), Failure> {
+    check("hexapod", [148, 142, 88])
+}
+
+#[test]
+fn eight_ups() -> Result<(), Failure> {
+    check("octopod", [194, 186, 114])
+}
+
+#[test]
+fn rx90() -> Result<(), Failure> {
+    check("rx90", [58, 58, 40])
+}
+
+#[test]
+fn emps() -> Result<(), Failure> {
+    check("emps", [4, 4, 1])
+}
