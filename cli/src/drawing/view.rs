@@ -137,7 +137,9 @@ fn plane(mechanism: &Mechanism, scene: &Scene) -> Option<Point> {
         _ => None,
     });
     let normal = match motion {
-        Some(Motion::Planar { axis: a } | Motion::Point { axis: a }) => axis(a),
+        Some(
+            Motion::Planar { axis: a } | Motion::Point { axis: a } | Motion::Rotation { axis: a },
+        ) => axis(a),
         _ => match turning {
             Some(turning) => turning,
             None => straight(mechanism, scene)?,

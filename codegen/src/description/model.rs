@@ -55,6 +55,11 @@ pub enum Motion {
         /// The axis.
         axis: usize,
     },
+    /// Rotation about an axis through the platform's origin.
+    Rotation {
+        /// The axis.
+        axis: usize,
+    },
     /// A point in a plane.
     Point {
         /// The plane's normal.
@@ -88,6 +93,7 @@ impl Motion {
         let in_plane = |axis: usize| [AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]];
         match self {
             Self::FixedAxis { axis } => vec![AXES[axis % 3]],
+            Self::Rotation { .. } => vec!["phi"],
             Self::Point { axis } => in_plane(axis).to_vec(),
             Self::Planar { axis } => [&in_plane(axis)[..], &["phi"]].concat(),
             Self::Translation => AXES.to_vec(),
@@ -103,7 +109,7 @@ impl Motion {
 pub struct Platform {
     /// Which motion it has.
     pub motion: Spanned<Motion>,
-    /// A point of the axis of a fixed-axis motion, m; zero for other motions.
+    /// The point of a fixed axis where the platform's origin is at zero, m; zero for other motions.
     pub axis_at: [Number; 3],
     /// The home pose.
     pub home: PlatformHome,

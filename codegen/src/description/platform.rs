@@ -69,9 +69,9 @@ fn motion(word: Word, axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Mot
     let mut at = [Number::ZERO; 3];
     let motion = match word {
         Word::FixedAxis => {
-            let direction;
-            (direction, at) = fixed_axis(axis, scope)?;
-            Motion::FixedAxis { axis: direction }
+            let fixed = fixed_axis(axis, scope)?;
+            at = fixed.1;
+            fixed.0
         }
         Word::Point => Motion::Point {
             axis: normal(axis)?,
@@ -103,21 +103,30 @@ fn normal(axis: Option<&Item<'_, '_>>) -> Option<usize> {
     axis.map_or(Some(2), |item| Some(item.choice(&AXES)?.value))
 }
 
-/// Direction and point of a fixed axis; the word alone is an axis through the origin.
-fn fixed_axis(axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(usize, [Number; 3])> {
+/// Motion on a fixed axis and a point of it; the word alone is a translation along an axis through the
+/// origin.
+fn fixed_axis(axis: Option<&Item<'_, '_>>, scope: &Scope) -> Option<(Motion, [Number; 3])> {
     let Some(item) = axis.filter(|item| item.is_table()) else {
-        return Some((normal(axis)?, [Number::ZERO; 3]));
+        let motion = Motion::FixedAxis {
+            axis: normal(axis)?,
+        };
+        return Some((motion, [Number::ZERO; 3]));
     };
     let table = item.table("`axis`")?;
     let at = table
         .get("at")
         .and_then(|i| i.vector(Dimension::LENGTH, scope));
     let direction = table.require("direction", "for instance direction = \"z\"");
+    let choices = [("translation", false), ("rotation", true)];
+    let turns = table.get("motion").map(|item| item.choice(&choices));
     table.finish();
-    Some((
-        direction?.choice(&AXES)?.value,
-        at.unwrap_or([Number::ZERO; 3]),
-    ))
+    let axis = direction?.choice(&AXES)?.value;
+    let motion = match turns {
+        None => Motion::FixedAxis { axis },
+        Some(turns) if turns.as_ref()?.value => Motion::Rotation { axis },
+        Some(_) => Motion::FixedAxis { axis },
+    };
+    Some((motion, at.unwrap_or([Number::ZERO; 3])))
 }
 
 fn read_home(item: &Item<'_, '_>, motion: Motion, scope: &Scope) -> Option<PlatformHome> {

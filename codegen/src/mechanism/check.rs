@@ -95,11 +95,24 @@ fn plain(description: &Description) -> Mechanism {
         source: description.source.clone(),
         gravity: description.gravity,
         platform,
-        legs: description.legs.iter().map(leg).collect(),
+        legs: on_axis(description, description.legs.iter().map(leg).collect()),
         home: Home::default(),
         // Chosen when the home configuration is known, if the description leaves it open.
         kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
     }
+}
+
+/// The legs as seen from the point of a fixed axis where the platform's origin is: the mechanism's base
+/// frame has its origin there, so that the platform turns about it.
+fn on_axis(description: &Description, mut legs: Vec<Leg>) -> Vec<Leg> {
+    if let Some(platform) = &description.platform {
+        for leg in &mut legs {
+            for (at, origin) in leg.base.at.iter_mut().zip(platform.axis_at) {
+                *at = *at - origin;
+            }
+        }
+    }
+    legs
 }
 
 fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {

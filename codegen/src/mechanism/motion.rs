@@ -30,6 +30,7 @@ impl Motion {
         use TwistCoordinate::{Angular, Linear};
         match self {
             Self::FixedAxis { axis } => vec![Linear(axis)],
+            Self::Rotation { axis } => vec![Angular(axis)],
             Self::Point { axis } => Self::plane(axis).map(Linear).to_vec(),
             Self::Planar { axis } => {
                 let [a, b] = Self::plane(axis);
@@ -48,6 +49,7 @@ impl Motion {
         const QUATERNION: [&str; 4] = ["qw", "qx", "qy", "qz"];
         match self {
             Self::FixedAxis { axis } => vec![AXES[axis]],
+            Self::Rotation { .. } => vec!["phi"],
             Self::Point { axis } => Self::plane(axis).map(|a| AXES[a]).to_vec(),
             Self::Planar { axis } => {
                 let [a, b] = Self::plane(axis);
@@ -74,7 +76,9 @@ impl Motion {
     #[must_use]
     pub const fn rotation_axis(self) -> Option<usize> {
         match self {
-            Self::Planar { axis } | Self::Schoenflies { axis } => Some(axis),
+            Self::Rotation { axis } | Self::Planar { axis } | Self::Schoenflies { axis } => {
+                Some(axis)
+            }
             _ => None,
         }
     }

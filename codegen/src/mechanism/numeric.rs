@@ -119,7 +119,7 @@ pub fn platform_frame(motion: Motion, pose: &[f64]) -> Isometry3<f64> {
         Motion::Translation | Motion::Schoenflies { .. } | Motion::Spatial => {
             at = Vector3::new(pose[0], pose[1], pose[2]);
         }
-        Motion::Spherical => {}
+        Motion::Rotation { .. } | Motion::Spherical => {}
     }
     if let Some(axis) = motion.rotation_axis() {
         let mut direction = Vector3::zeros();

@@ -36,6 +36,10 @@ fn motion(motion: mechanism::Motion) -> Motion {
                 direction,
             }
         }
+        Described::Rotation { axis } => Motion::Hinge {
+            point: Vector3::zeros(),
+            direction: Vector3::ith(axis, 1.0),
+        },
         Described::Point { axis } => Motion::Point(axis),
         Described::Planar { axis } => Motion::Planar(axis),
         Described::Translation => Motion::Translation,

@@ -1,6 +1,6 @@
 //! Values of expressions and joints in good descriptions.
 
-use super::{good, single};
+use super::{good, listed, single};
 use crate::cas::{Angle, Number, Ratio};
 use crate::description::*;
 
@@ -152,6 +152,31 @@ shape = "a"
             along: [true; 3]
         }
     );
+    assert_eq!(Motion::Rotation { axis: 0 }.coordinates(), ["phi"]);
     assert_eq!(Motion::Planar { axis: 1 }.coordinates(), ["z", "x", "phi"]);
     assert_eq!(Motion::Spatial.coordinates().len(), 6);
+}
+
+#[test]
+fn a_fixed_axis_is_slid_along_or_turned_about() {
+    let on_axis = |axis: &str| {
+        format!(
+            "name = \"one_axis\"\n[platform]\nmotion = \"fixed axis\"\naxis = {axis}\n\
+             [[leg.a.joint]]\ntype = \"revolute\"\nactuated = true\n[leg.a.end]\n\
+             [[place]]\nname = \"a\"\nshape = \"a\""
+        )
+    };
+    let motion = |axis: &str| good(&on_axis(axis)).platform.unwrap().motion.value;
+    assert_eq!(motion("\"y\""), Motion::FixedAxis { axis: 1 });
+    assert_eq!(
+        motion("{ direction = \"y\", motion = \"translation\" }"),
+        Motion::FixedAxis { axis: 1 }
+    );
+    assert_eq!(
+        motion("{ direction = \"y\", motion = \"rotation\" }"),
+        Motion::Rotation { axis: 1 }
+    );
+    let errors = listed(&on_axis("{ direction = \"y\", motion = \"screw\" }"));
+    let expected = "4:36 `motion`: expected \"translation\" or \"rotation\", found \"screw\"";
+    assert_eq!(errors, [expected]);
 }

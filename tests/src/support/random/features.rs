@@ -5,8 +5,9 @@ use crate::reference::{JointKind, Motion};
 use std::collections::BTreeSet;
 
 /// Everything that a run of some hundred mechanisms has to meet.
-pub const ALL: [&str; 40] = [
-    "motion: fixed axis",
+pub const ALL: [&str; 41] = [
+    "motion: slide",
+    "motion: hinge",
     "motion: point",
     "motion: planar",
     "motion: translation",
@@ -60,7 +61,8 @@ impl Sketch {
         };
         let motion = match self.motion {
             Motion::None => "none",
-            Motion::Slide { .. } | Motion::Hinge { .. } => "fixed axis",
+            Motion::Slide { .. } => "slide",
+            Motion::Hinge { .. } => "hinge",
             Motion::Point(_) => "point",
             Motion::Planar(_) => "planar",
             Motion::Translation => "translation",

@@ -23,7 +23,7 @@ pub enum Structure {
     Parallelograms,
     /// Three axes through the origin.
     Wrist,
-    /// One prismatic joint along the axis of a fixed-axis motion.
+    /// One joint on the axis of a fixed-axis motion.
     Drive(usize),
     /// A serial or tree robot.
     Tree,
@@ -38,8 +38,12 @@ impl Structure {
             Motion::None => return Self::Tree,
             Motion::Slide { direction, .. } | Motion::Hinge { direction, .. } => {
                 let axis = direction.iamax();
-                let normal = (axis + 1 + dice.below(2)) % 3;
-                vec![Drive(axis), Slot, InPlane(normal), Parallelograms]
+                if matches!(motion, Motion::Hinge { .. }) {
+                    vec![Drive(axis), Slot, InPlane(axis)]
+                } else {
+                    let normal = (axis + 1 + dice.below(2)) % 3;
+                    vec![Drive(axis), Slot, InPlane(normal), Parallelograms]
+                }
             }
             Motion::Point(axis) => vec![InPlane(axis), InPlane(axis), Parallelograms],
             Motion::Planar(axis) => vec![InPlane(axis), InPlane(axis)],
@@ -70,7 +74,14 @@ impl Structure {
             None if dice.chance(0.3) => [0.0; 3],
             None => std::array::from_fn(|_| dice.angle(1.5)),
         };
-        let at = if self == Self::Wrist { [0.0; 3] } else { at };
+        let at = match (self, motion) {
+            (Self::Wrist, _) => [0.0; 3],
+            // The joint may be anywhere along the axis that the platform turns about.
+            (Self::Drive(axis), Motion::Hinge { point, .. }) => {
+                std::array::from_fn(|i| if i == axis { at[i] } else { point[i] })
+            }
+            _ => at,
+        };
         Placement { at, rotation }
     }
 }
@@ -142,7 +153,12 @@ impl Shape {
                 Kind::Rigid
             }
             Structure::Drive(_) => {
-                let joint = chain.next(JointKind::Prismatic);
+                let turns = matches!(motion, Motion::Hinge { .. });
+                let joint = chain.next(if turns {
+                    JointKind::Revolute
+                } else {
+                    JointKind::Prismatic
+                });
                 chain.push(joint);
                 Kind::Rigid
             }

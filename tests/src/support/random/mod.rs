@@ -231,10 +231,15 @@ impl Sketch {
 fn draw_motion(dice: &mut Dice, seed: u64) -> Motion {
     let axis = dice.below(3);
     match seed % 8 {
-        0 => Motion::Slide {
-            point: Vector3::zeros(),
-            direction: Vector3::ith(axis, 1.0),
-        },
+        0 => {
+            let point = Vector3::from_fn(|_, _| dice.length(0.3));
+            let direction = Vector3::ith(axis, 1.0);
+            if dice.chance(0.5) {
+                Motion::Slide { point, direction }
+            } else {
+                Motion::Hinge { point, direction }
+            }
+        }
         1 => Motion::Point(axis),
         2 => Motion::Planar(axis),
         3 => Motion::Translation,
@@ -248,13 +253,16 @@ fn draw_motion(dice: &mut Dice, seed: u64) -> Motion {
 /// A home pose; coordinates that the motion has not stay zero.
 fn draw_home(dice: &mut Dice, motion: Motion) -> Placement {
     let mut home = Placement::default();
+    if let Motion::Slide { point, .. } | Motion::Hinge { point, .. } = motion {
+        home.at = point.into();
+    }
     if dice.chance(0.2) {
         return home;
     }
     let basis = motion.twist_basis();
     for row in (0..6).filter(|&row| basis.row(row).amax() > 0.0) {
         match row {
-            0..3 => home.at[row] = dice.length(0.2),
+            0..3 => home.at[row] += dice.length(0.2),
             _ => home.rotation[row - 3] = dice.angle(0.5),
         }
     }

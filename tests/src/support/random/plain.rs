@@ -68,7 +68,10 @@ impl Sketch {
         let plane = |axis: usize| [at[(axis + 1) % 3], at[(axis + 2) % 3]];
         match self.motion {
             Motion::None => self.shapes[0].places[0].home.clone(),
-            Motion::Slide { direction, .. } => vec![at[direction.iamax()]],
+            Motion::Slide { point, direction } => {
+                let axis = direction.iamax();
+                vec![at[axis] - point[axis]]
+            }
             Motion::Hinge { direction, .. } => vec![rotation[direction.iamax()]],
             Motion::Point(axis) => plane(axis).to_vec(),
             Motion::Planar(axis) => [&plane(axis)[..], &[rotation[axis]]].concat(),

@@ -43,8 +43,9 @@ impl Sketch {
     fn write_platform(&self, text: &mut String) {
         let (word, axis) = match self.motion {
             Motion::None => return,
-            Motion::Slide { direction, .. } => ("fixed axis", Some(direction.iamax())),
-            Motion::Hinge { .. } => unreachable!("no draw has one"),
+            Motion::Slide { direction, .. } | Motion::Hinge { direction, .. } => {
+                ("fixed axis", Some(direction.iamax()))
+            }
             Motion::Point(axis) => ("point", Some(axis)),
             Motion::Planar(axis) => ("planar", Some(axis)),
             Motion::Translation => ("translation", None),
@@ -53,21 +54,34 @@ impl Sketch {
             Motion::Spatial => ("spatial", None),
         };
         line(text, &format!("\n[platform]\nmotion = \"{word}\""));
-        if let Some(axis) = axis {
-            line(text, &format!("axis = \"{}\"", AXES[axis]));
+        let point = match self.motion {
+            Motion::Slide { point, .. } => Some(("translation", point)),
+            Motion::Hinge { point, .. } => Some(("rotation", point)),
+            _ => None,
+        };
+        let axis = axis.map(|axis| AXES[axis]);
+        match (axis, point) {
+            (Some(axis), Some((motion, at))) => {
+                let [x, y, z]: [f64; 3] = at.into();
+                let at = format!("at = [{x:?}, {y:?}, {z:?}]");
+                let of = format!("direction = \"{axis}\", motion = \"{motion}\", {at}");
+                line(text, &format!("axis = {{ {of} }}"));
+            }
+            (Some(axis), None) => line(text, &format!("axis = \"{axis}\"")),
+            _ => {}
         }
         let Placement { at, rotation } = self.home;
         let basis = self.motion.twist_basis();
         let name = |row: usize| match (row, self.motion) {
             (0..3, _) => AXES[row],
-            (_, Motion::Planar(_) | Motion::Schoenflies(_)) => "phi",
+            (_, Motion::Hinge { .. } | Motion::Planar(_) | Motion::Schoenflies(_)) => "phi",
             (_, _) => ["rx", "ry", "rz"][row - 3],
         };
         let given = (0..6)
             .filter(|&row| basis.row(row).amax() > 0.0)
             .map(|row| {
                 let value = match row {
-                    0..3 => format!("{:?}", at[row]),
+                    0..3 => format!("{:?}", at[row] - point.map_or(0.0, |(_, p)| p[row])),
                     _ => angle(rotation[row - 3]),
                 };
                 format!("{} = {value}", name(row))
