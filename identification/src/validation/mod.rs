@@ -16,12 +16,13 @@ use serde::Serialize;
 
 use crate::{
     blocks::{BLOCK, slice},
+    checks,
     conditioning::least_norm,
     data::Log,
     error::Error,
     estimate::{LineError, overall, percent},
     filters::Decimator,
-    identify::figures::RunFigures,
+    identify::{figures::RunFigures, verdict::Finding},
     kinematics::{Motion, Motions},
     observation::{Chunk, Observer, Points},
     regression::Projection,
@@ -91,8 +92,18 @@ pub(crate) struct Candidate<'a> {
     pub(crate) values: &'a [f64],
 }
 
+/// What a run that is held out tells.
+pub(crate) struct Validated {
+    /// For each candidate its comparison, or why it has none.
+    pub(crate) validations: Vec<Result<Validation, Error>>,
+    /// The motion of the run, for plots.
+    pub(crate) motion: RunFigures,
+    /// What is suspicious in it.
+    pub(crate) findings: Vec<Finding>,
+}
+
 /// Compares a run with the predictions of several sets of parameters. A projection that is singular on
-/// the run has no comparison, but an error. The motion of the run is given, too, for plots.
+/// the run has no comparison, but an error.
 ///
 /// # Errors
 /// A run that does not fit, a sample outside the workspace, a file that can't be read.
@@ -101,7 +112,7 @@ pub(crate) fn validate(
     log: &Log,
     candidates: &[Candidate<'_>],
     progress: &dyn Fn(usize, usize),
-) -> Result<(Vec<Result<Validation, Error>>, RunFigures), Error> {
+) -> Result<Validated, Error> {
     let info = observer.model.info();
     let mut motions = Motions::new(observer.model, log, observer.settings)?;
     let samples = motions.samples();
@@ -113,7 +124,9 @@ pub(crate) fn validate(
     let stride = plan.stride();
     let mut points = Points::new(observer, log, &decimator, samples, &plan);
     let mut sums = Sums::new(&layout, stride);
+    let mut closure_residual = 0.0_f64;
     while let Some(motion) = motions.next()? {
+        closure_residual = closure_residual.max(motion.closure_residual);
         let chunks = observer.chunks(&motion, &mut failed)?;
         let rows: Vec<Vec<f64>> = chunks
             .par_iter()
@@ -159,7 +172,11 @@ pub(crate) fn validate(
     };
     points.partitions(observer.projections);
     let validations = candidates.iter().enumerate().map(of_candidate).collect();
-    Ok((validations, points.figures))
+    Ok(Validated {
+        validations,
+        motion: points.figures,
+        findings: checks::of_run(observer.model, log, motions, closure_residual)?,
+    })
 }
 
 /// The comparison of one candidate.
