@@ -1,15 +1,16 @@
 //! The whole identification: runs in, parameters with their quality out.
 //!
 //! [`identify`] estimates case 1 and case 2 of a redundant robot, or the joint model of one without
-//! redundancy; each in base parameters, then in essential ones. [`prepare`] and
-//! [`estimate_projection`] are its two halves, for studies that estimate many projections from the
-//! same motion.
+//! redundancy; each in base parameters, then in essential ones. [`study()`] compares case 2 for many
+//! choices of kept actuators. [`prepare`] and [`estimate_projection`] are what both are made of: one
+//! pass over the data for all projections, then the estimates.
 
 pub mod figures;
 mod judgement;
 mod plots;
 mod result;
 mod stages;
+mod study;
 pub mod verdict;
 
 use std::collections::BTreeMap;
@@ -22,6 +23,7 @@ pub use result::{
     Stage,
 };
 pub use stages::{Outcome, estimate_projection};
+pub use study::{Choice, Study, study};
 
 use crate::{
     base::{BaseParameters, PayloadUse, base_parameters},
@@ -313,6 +315,8 @@ fn projections(model: &dyn Model, settings: &Settings) -> Vec<Projection> {
 #[derive(Default)]
 struct HeldOut {
     validations: Vec<CrossValidation>,
+    /// The number of the projection of each.
+    owners: Vec<usize>,
     motions: Vec<figures::RunFigures>,
     findings: Vec<verdict::Finding>,
     warnings: Vec<String>,
@@ -364,12 +368,13 @@ fn cross_validate(
     }
     Error::check(problems)?;
     // In the order of the estimates, each on all runs.
-    for (index, (_, estimate)) in estimates.iter().enumerate() {
+    for (index, (projection, estimate)) in estimates.iter().enumerate() {
         for (payload, validations) in &all {
             match &validations[index] {
                 Ok(validation) => {
                     let validation = CrossValidation::new(estimate, *payload, validation.clone());
                     held_out.validations.push(validation);
+                    held_out.owners.push(*projection);
                 }
                 Err(error) if estimate.stage == Stage::Base => {
                     let warning = format!("no cross-validation: {error}");
