@@ -10,14 +10,14 @@
 
 mod layout;
 
-use overact::{Function, Info};
+use overact::{Function, Info, Model};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::{
     blocks::{BLOCK, slice},
     checks,
-    conditioning::least_norm,
+    conditioning::{least_multipliers, least_norm, product, transposed_product},
     data::Log,
     error::Error,
     estimate::{LineError, overall, percent},
@@ -117,7 +117,7 @@ pub(crate) fn validate(
     let mut motions = Motions::new(observer.model, log, observer.settings)?;
     let samples = motions.samples();
     let decimator = Decimator::new(observer.settings.decimation)?;
-    let layout = Layout::new(info.sizes, candidates.len());
+    let layout = Layout::new(info.sizes, candidates.len(), offers_closure(observer.model));
     let mut stream = decimator.stream(layout.width(), samples)?;
     let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
     let plan = Plan::new(decimator.kept(samples), 0);
@@ -218,10 +218,13 @@ fn validation(
         relative_error_percent: percent(residual_norm, measured_norm),
         table: torque_errors
             .iter()
-            .map(|error| TorqueComparison {
+            .enumerate()
+            .map(|(actuator, error)| TorqueComparison {
                 actuator: error.name.clone(),
                 least_norm_percent: error.relative_error_percent,
-                closure_percent: None,
+                closure_percent: layout
+                    .closure_torque(candidate, actuator)
+                    .map(|pair| sums.error(&error.name, pair).relative_error_percent),
             })
             .collect(),
         projected_torques: errors(&torques(Layout::projected_torque), actuators),
@@ -250,6 +253,10 @@ fn rows(
         .model
         .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
         .map_err(|error| motion.outside(first + error.sample, error.error))?;
+    let closures = match layout.closure() {
+        true => closures(observer.model, pose, count),
+        false => None,
+    };
     let torques = slice(&motion.torques, n, first, count);
     let mut rows = vec![0.0; count * layout.width()];
     for (sample, row) in rows.chunks_exact_mut(layout.width()).enumerate() {
@@ -285,13 +292,39 @@ fn rows(
             let place = &mut row[layout.predicted_torques(number)];
             if *projection == Projection::Joints {
                 place.copy_from_slice(&predicted);
-            } else {
-                let gamma = platform_input(projection, &info, jacobian, &predicted);
-                product(&distribution, &gamma, place);
+                continue;
+            }
+            let gamma = platform_input(projection, &info, jacobian, &predicted);
+            product(&distribution, &gamma, place);
+            if let (Some(range), Some(closures)) = (layout.closure_torques(number), &closures) {
+                let closure = slice(closures, n * n, sample, 1);
+                if let Some(other) = least_multipliers(jacobian, closure, r) {
+                    product(&other, &gamma, &mut row[range]);
+                }
             }
         }
     }
     Ok(rows)
+}
+
+/// B_p of the closure at some poses, n x n each, where the model offers it.
+fn closures(model: &dyn Model, poses: &[f64], count: usize) -> Option<Vec<f64>> {
+    let sizes = model.info().sizes;
+    let mut joints = vec![0.0; count * sizes.joints];
+    model
+        .evaluate(Function::Joints, &[poses], &mut joints)
+        .ok()?;
+    let mut closures = vec![0.0; count * sizes.actuators * sizes.actuators];
+    model
+        .evaluate(Function::ClosureActuatorJacobian, &[&joints], &mut closures)
+        .ok()?;
+    Some(closures)
+}
+
+/// Whether the torques of eq. (26) can be told: the robot is redundant and has its closure matrices.
+fn offers_closure(model: &dyn Model) -> bool {
+    let info = model.info();
+    info.sizes.actuators > info.sizes.dof && closures(model, info.home_pose, 1).is_some()
 }
 
 /// Γ¹ of inputs Γ in the projection: themselves on the platform, J_aᵀ Γ² on kept actuators.
@@ -309,23 +342,4 @@ pub(crate) fn platform_input(
         .zip(inputs)
         .for_each(|(&k, value)| torques[k] = *value);
     transposed_product(jacobian, &torques, info.sizes.dof)
-}
-
-/// Product of a matrix (rows of the vector's length) with a vector.
-pub(crate) fn product(matrix: &[f64], vector: &[f64], result: &mut [f64]) {
-    for (row, result) in matrix.chunks_exact(vector.len()).zip(result) {
-        *result = row.iter().zip(vector).map(|(a, b)| a * b).sum();
-    }
-}
-
-/// Product of the transpose of a matrix of `r` columns with a vector: Γ¹ = J_p^invᵀ τ.
-pub(crate) fn transposed_product(matrix: &[f64], vector: &[f64], r: usize) -> Vec<f64> {
-    let mut result = vec![0.0; r];
-    for (row, factor) in matrix.chunks_exact(r).zip(vector) {
-        result
-            .iter_mut()
-            .zip(row)
-            .for_each(|(result, a)| *result += a * factor);
-    }
-    result
 }
