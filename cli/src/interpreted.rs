@@ -115,7 +115,8 @@ impl InterpretedRobot {
     }
 
     fn serve(&self, function: Function, family: Family) -> Option<Served> {
-        let wanted = self.model.plain(family)?;
+        let from_joints = || self.model.function(family, From::Joints);
+        let wanted = self.model.plain(family).or_else(from_joints)?;
         let index = self
             .model
             .functions
@@ -126,7 +127,11 @@ impl InterpretedRobot {
             if finds_joints && array.name == "joints" {
                 return Some(None);
             }
-            let input = input_of(&array.name)?;
+            let joints = array.name == "joints" && function.inputs().contains(&Input::Joints);
+            let input = match joints {
+                true => Input::Joints,
+                false => input_of(&array.name)?,
+            };
             function.inputs().iter().position(|i| *i == input).map(Some)
         };
         let inputs: Option<Vec<Option<usize>>> = wanted.program.inputs.iter().map(place).collect();
@@ -407,7 +412,7 @@ impl Scratch {
 }
 
 /// The functions of the trait and what they are called in the generator.
-const ALL: [(Function, Family); 15] = [
+const ALL: [(Function, Family); 16] = [
     (Function::Joints, Family::Joints),
     (Function::ActuatorPositions, Family::ActuatorPositions),
     (Function::InverseJacobian, Family::InverseJacobian),
@@ -429,6 +434,10 @@ const ALL: [(Function, Family); 15] = [
     (Function::Bias, Family::Bias),
     (Function::ProjectTorques, Family::ProjectTorques),
     (Function::NullSpace, Family::NullSpace),
+    (
+        Function::ClosureActuatorJacobian,
+        Family::ClosureActuatorJacobian,
+    ),
 ];
 
 /// The input that a program's array of this name is. A tree's joints are its pose.

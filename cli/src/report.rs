@@ -26,9 +26,9 @@ pub(crate) struct Arguments {
     /// numbers as one flat table (.csv); once for each
     #[arg(long = "report", value_name = "FILE")]
     reports: Vec<PathBuf>,
-    /// Published results to show beside the own ones in the page [default: `published/NAME.toml` beside
+    /// Published results to show beside the own ones [default: `published/NAME.toml` beside
     /// the description NAME.toml, where it exists]
-    #[arg(long, value_name = "TOML", requires = "reports")]
+    #[arg(long, value_name = "TOML")]
     published: Option<PathBuf>,
 }
 
@@ -72,19 +72,22 @@ impl Arguments {
             output::check_folder(Some(path))?;
             files.push((path.clone(), format));
         }
-        let has_page = files.iter().any(|(_, format)| *format == Format::Html);
-        let published = match (&self.published, has_page) {
-            (Some(path), _) => Some(published(path)?),
-            (None, true) => beside(&robot.file)
+        let published = match &self.published {
+            Some(path) => Some(published(path)?),
+            None => beside(&robot.file)
                 .map(|path| published(&path))
                 .transpose()?,
-            (None, false) => None,
         };
         Ok(Reports { files, published })
     }
 }
 
 impl Reports {
+    /// Published results of the robot, where there are some.
+    pub(crate) const fn published(&self) -> Option<&Published> {
+        self.published.as_ref()
+    }
+
     /// The files with their contents.
     ///
     /// # Errors

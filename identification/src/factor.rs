@@ -6,6 +6,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::elimination::eliminate;
+
 /// Rows are taken in blocks of this many times the number of columns.
 const BLOCK_RATIO: usize = 4;
 
@@ -117,6 +119,12 @@ impl Factor {
             residual.axpy(-value, &self.r.column(column), 1.0);
         }
         residual.norm()
+    }
+
+    /// The smallest ||Y - W χ|| of parameters in the columns `selected`, which may be dependent.
+    pub(crate) fn smallest_residual(&self, selected: &[usize]) -> f64 {
+        let kept = eliminate(&self.r, selected, 1e-10).kept;
+        self.reduced(&kept).residual_norm
     }
 
     /// Σ(Y - W χ) over all equations.

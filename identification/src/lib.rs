@@ -20,6 +20,7 @@
 
 pub mod base;
 mod blocks;
+mod checks;
 pub mod columns;
 mod conditioning;
 mod correlation;

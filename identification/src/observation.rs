@@ -9,12 +9,16 @@ use rayon::prelude::*;
 
 use crate::{
     blocks::{BLOCK, slice},
+    checks,
     columns::ColumnSet,
     conditioning::{Choice, Condition, home_scales},
     data::Log,
     error::Error,
     filters::Decimator,
-    identify::figures::{ConditionSeries, RunFigures},
+    identify::{
+        figures::{ConditionSeries, RunFigures},
+        verdict::Finding,
+    },
     kinematics::{Motion, Motions},
     regression::{Observed, PartitionCondition, Projection, singular},
     settings::Settings,
@@ -41,6 +45,8 @@ pub(crate) struct Seen {
     pub(crate) figures: RunFigures,
     /// Decimated torques at these points, points x n.
     pub(crate) torques: Vec<f64>,
+    /// What is suspicious in it.
+    pub(crate) findings: Vec<Finding>,
 }
 
 /// Some successive samples, evaluated: for each projection and line samples x (columns + 1), Y last.
@@ -120,6 +126,7 @@ impl Observer<'_> {
             closure_residual,
             figures: points.figures,
             torques: plan.at_points(&decimated_torques, info.sizes.actuators),
+            findings: checks::of_run(self.model, log, motions, closure_residual)?,
         };
         Ok((systems, seen))
     }

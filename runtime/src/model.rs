@@ -61,6 +61,9 @@ pub enum Function {
     ProjectTorques,
     /// Pose -> orthonormal basis N of the null space of (J_p^inv)ᵀ, n x (n - r).
     NullSpace,
+    /// Joint positions -> B_p of the reduced closure A_p v + B_p q̇ = 0, n x n, eq. (11). With
+    /// A_p = -B_p J_p^inv it gives the torques of eq. (26).
+    ClosureActuatorJacobian,
 }
 
 impl Function {
@@ -68,8 +71,8 @@ impl Function {
     #[must_use]
     pub const fn inputs(self) -> &'static [Input] {
         use Input::{
-            Acceleration, ActuatorAccelerations, ActuatorVelocities, Parameters, Pose, Torques,
-            Twist,
+            Acceleration, ActuatorAccelerations, ActuatorVelocities, Joints, Parameters, Pose,
+            Torques, Twist,
         };
         match self {
             Self::Joints | Self::ActuatorPositions | Self::InverseJacobian | Self::NullSpace => {
@@ -85,6 +88,7 @@ impl Function {
             Self::InverseDynamics => &[Pose, Twist, Acceleration, Parameters],
             Self::MassMatrix => &[Pose, Parameters],
             Self::Bias => &[Pose, Twist, Parameters],
+            Self::ClosureActuatorJacobian => &[Joints],
         }
     }
 
@@ -105,6 +109,7 @@ impl Function {
             Self::IdmRedPayload => (sizes.dof, sizes.payload_parameters),
             Self::MassMatrix => (sizes.dof, sizes.dof),
             Self::NullSpace => (sizes.actuators, sizes.actuators - sizes.dof),
+            Self::ClosureActuatorJacobian => (sizes.actuators, sizes.actuators),
         }
     }
 
@@ -127,6 +132,7 @@ impl Function {
             Self::Bias => "bias",
             Self::ProjectTorques => "project_torques",
             Self::NullSpace => "null_space",
+            Self::ClosureActuatorJacobian => "closure_actuator_jacobian",
         }
     }
 }

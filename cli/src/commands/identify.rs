@@ -3,6 +3,8 @@
 //! Measured or virtual, the identification sees positions and torques of the actuators only. The true
 //! values of a virtual experiment stand beside the estimates and nowhere in them.
 
+mod tracking;
+
 use super::runs;
 use crate::{
     InterpretedRobot, failure::Failure, load::load_to_serve, output, progress::Progress,
@@ -23,6 +25,10 @@ pub(crate) struct Arguments {
     /// Kept actuators of case 2 [default: those of the description]
     #[arg(long, value_delimiter = ',', value_name = "ACTUATORS")]
     kept: Option<Vec<String>>,
+    /// Let the virtual robot follow the held-out runs with a PD controller alone and with computed
+    /// torques [default: where the runs are virtual and published results lie beside the description]
+    #[arg(long)]
+    tracking: bool,
     /// Write the tables (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -61,10 +67,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if !robot.description.identification.essential {
         without_essential(&mut result, robot.description.identification.r_sigma);
     }
+    let beside = reports.published().filter(|_| arguments.runs.are_virtual());
+    if arguments.tracking || beside.is_some() {
+        result.tracking = tracking::tracking(&robot, &served, &result, as_json)?;
+    }
     let text = if as_json {
         output::json(&result)?
     } else {
-        report::report(&result)
+        let beside = reports.published();
+        report::report(&result) + &report::beside(&result, beside)
     };
     // All files are written together, so that none is there without the others.
     let mut written = reports.written(&robot, &served.info(), &result)?;

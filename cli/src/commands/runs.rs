@@ -28,7 +28,8 @@ pub(super) struct Arguments {
     /// Logs of runs with the payload on the platform
     #[arg(long, value_name = "LOG", num_args = 1..)]
     payload_data: Vec<PathBuf>,
-    /// Logs to compare predictions with; names of runs where the experiment is virtual
+    /// Logs to compare predictions with; names of runs where the experiment is virtual [default: those
+    /// that the description holds out]
     #[arg(long, value_name = "LOG", num_args = 1..)]
     cross_validate: Vec<PathBuf>,
     /// The same, with the payload
@@ -62,6 +63,11 @@ pub(super) struct Runs {
 }
 
 impl Arguments {
+    /// Whether the runs are those of the virtual experiment.
+    pub(super) fn are_virtual(&self) -> bool {
+        self.data.is_empty() && self.payload_data.is_empty()
+    }
+
     /// Reads the logs, or makes the virtual experiment.
     ///
     /// # Errors
@@ -72,7 +78,7 @@ impl Arguments {
         served: &InterpretedRobot,
         as_json: bool,
     ) -> Result<Runs, Failure> {
-        if self.data.is_empty() && self.payload_data.is_empty() {
+        if self.are_virtual() {
             self.made(robot, served, as_json)
         } else {
             self.measured(robot, &served.info())
@@ -126,13 +132,16 @@ impl Arguments {
             .cross_validate
             .iter()
             .chain(&self.cross_validate_payload);
-        let held: Vec<String> = held.map(|path| name(path)).collect();
+        let mut held: Vec<String> = held.map(|path| name(path)).collect();
         let unknown = held.iter().filter(|name| !known.contains(name));
         let problems: Vec<Problem> = unknown
             .map(|name| simulate::unknown_run(robot, name, &known))
             .collect();
         if !problems.is_empty() {
             return Err(Failure::Problems(problems));
+        }
+        if held.is_empty() {
+            held = held_out(robot);
         }
         simulate::warn(&without_effect, as_json);
         let records = simulate::records(robot, served, &virtual_experiment, as_json)?;
@@ -148,6 +157,14 @@ impl Arguments {
             truth,
         })
     }
+}
+
+/// Names of the runs that the description holds out.
+pub(super) fn held_out(robot: &Robot) -> Vec<String> {
+    let table = robot.description.experiment.as_ref();
+    let runs = table.iter().flat_map(|table| &table.runs);
+    let held = runs.filter(|run| run.validation);
+    held.map(|run| run.name.value.clone()).collect()
 }
 
 /// True values of all parameters: one that the description leaves out is zero in the virtual robot.

@@ -78,6 +78,9 @@ pub struct Run {
     pub name: Spanned<String>,
     /// Whether the payload is on the platform.
     pub payload: bool,
+    /// Whether the run is held out: predictions are compared with it, and no parameter is estimated
+    /// from it.
+    pub validation: bool,
     /// Duration, s; that of the experiment if absent.
     pub duration: Option<f64>,
     /// Frequency of the first harmonic, Hz.
@@ -262,6 +265,10 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
             .context
             .report(error.help("describe it in a table [platform.payload]"));
     }
+    let validation = table
+        .get("validation")
+        .and_then(|i| i.boolean())
+        .unwrap_or(false);
     let duration = table
         .get("duration")
         .and_then(|i| i.positive(Dimension::TIME, scope));
@@ -282,6 +289,7 @@ fn run(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Option<Run> {
     Some(Run {
         name: name?,
         payload,
+        validation,
         duration,
         fundamental: fundamental?,
         terms,

@@ -146,6 +146,32 @@ impl Log {
         self
     }
 
+    /// The first `samples` of the run, in memory.
+    ///
+    /// # Errors
+    /// As [`Log::reader`] and [`Reader::next`].
+    pub fn beginning(&self, samples: usize) -> Result<Self, Error> {
+        let count = samples.min(self.samples);
+        let (mut positions, mut torques) = (Vec::new(), Vec::new());
+        let mut reader = self.reader()?;
+        while positions.len() < count * self.actuators
+            && let Some(block) = reader.next()?
+        {
+            positions.extend(block.positions);
+            torques.extend(block.torques);
+        }
+        positions.truncate(count * self.actuators);
+        torques.truncate(count * self.actuators);
+        Self::new(
+            self.name.as_str(),
+            self.sampling_frequency,
+            self.actuators,
+            positions,
+            torques,
+            self.payload,
+        )
+    }
+
     /// Goes through the run from its first sample on.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// The folds of a system.
-pub(super) struct HeldOut {
+pub(crate) struct HeldOut {
     folds: Vec<Fold>,
     /// ||Y|| of all folds.
     measured: f64,
@@ -28,7 +28,7 @@ struct Fold {
 impl HeldOut {
     /// The folds of a system whose lines have the given weights; none where the columns `selected` are
     /// not determined without one of them.
-    pub(super) fn new(system: &System, selected: &[usize], weights: &[f64]) -> Option<Self> {
+    pub(crate) fn new(system: &System, selected: &[usize], weights: &[f64]) -> Option<Self> {
         let runs: Vec<usize> = system.parts.iter().map(|part| part.run).collect();
         // The number of each part within its run.
         let parts: Vec<usize> = (0..runs.len())
@@ -88,12 +88,21 @@ impl HeldOut {
 
     /// 100 ||Y - W χ||/||Y|| over all folds, χ being estimated from the others each time.
     pub(super) fn error_percent(&self, selected: &[usize]) -> Option<f64> {
+        self.error_percent_in(self, selected)
+    }
+
+    /// The same with the equations of another projection: its folds are predicted by what is
+    /// estimated from the others of this one.
+    pub(crate) fn error_percent_in(&self, other: &Self, selected: &[usize]) -> Option<f64> {
+        if self.folds.len() != other.folds.len() {
+            return None;
+        }
         let mut squares = 0.0;
-        for fold in &self.folds {
+        for (fold, judge) in self.folds.iter().zip(&other.folds) {
             let reduced = fold.others.reduced(selected);
             let values = reduced.triangle.solve_upper_triangular(&reduced.rhs)?;
-            squares += fold.own.residual_norm(selected, values.as_slice()).powi(2);
+            squares += judge.own.residual_norm(selected, values.as_slice()).powi(2);
         }
-        Some(percent(squares.sqrt(), self.measured))
+        Some(percent(squares.sqrt(), other.measured))
     }
 }

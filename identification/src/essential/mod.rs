@@ -31,7 +31,7 @@ use crate::{
     settings::Settings,
 };
 
-use held_out::HeldOut;
+pub(crate) use held_out::HeldOut;
 
 /// Relative error in percent below which the fit is exact but for rounding, and deviations are
 /// rounding, too.

@@ -1,14 +1,16 @@
 //! The whole identification: runs in, parameters with their quality out.
 //!
 //! [`identify`] estimates case 1 and case 2 of a redundant robot, or the joint model of one without
-//! redundancy; each in base parameters, then in essential ones. [`prepare`] and
-//! [`estimate_projection`] are its two halves, for studies that estimate many projections from the
-//! same motion.
+//! redundancy; each in base parameters, then in essential ones. [`study()`] compares case 2 for many
+//! choices of kept actuators. [`prepare`] and [`estimate_projection`] are what both are made of: one
+//! pass over the data for all projections, then the estimates.
 
 pub mod figures;
+mod judgement;
 mod plots;
 mod result;
 mod stages;
+mod study;
 pub mod verdict;
 
 use std::collections::BTreeMap;
@@ -21,9 +23,11 @@ pub use result::{
     Stage,
 };
 pub use stages::{Outcome, estimate_projection};
+pub use study::{Choice, Study, study};
 
 use crate::{
     base::{BaseParameters, PayloadUse, base_parameters},
+    checks,
     columns::ColumnSet,
     data::Log,
     error::{Error, Problem},
@@ -33,9 +37,6 @@ use crate::{
     settings::Settings,
     validation::{Candidate, validate},
 };
-
-/// A closure residual (m, rad) above this speaks of wrong geometry or offsets.
-const LARGEST_CLOSURE_RESIDUAL: f64 = 0.01;
 
 /// Values of all runs and projections that are kept as successive equations (64 MB).
 const LARGEST_STRETCHES: usize = 1 << 23;
@@ -164,7 +165,7 @@ pub fn prepare(
                 seen.push(told);
                 points.push(add(&mut systems, observed));
             }
-            Err(error) => problems.extend(error.problems),
+            Err(error) => problems.extend(checks::explained(model, log, error).problems),
         }
     }
     Error::check(problems)?;
@@ -260,6 +261,13 @@ pub fn identify(
     )?;
     warnings.extend(held_out.warnings);
     let cross_validation = held_out.validations;
+    let own = prepared.seen.iter().flat_map(|seen| seen.findings.clone());
+    let mut findings: Vec<verdict::Finding> = own.chain(held_out.findings).collect();
+    findings.extend(judgement::findings(
+        model, experiment, &prepared, &estimates, settings,
+    )?);
+    warnings.extend(findings.iter().map(judgement::located));
+    let thresholds = verdict::Thresholds::default();
     let figures = plots::figures(
         model,
         &prepared,
@@ -277,18 +285,18 @@ pub fn identify(
         ),
         without_effect: prepared.without_effect(),
         runs: prepared.runs,
+        warnings,
+        verdicts: judgement::verdicts(&estimates, &cross_validation, &findings, &thresholds),
+        findings,
+        thresholds,
+        tracking: Vec::new(),
+        settings: settings.clone(),
+        figures,
         estimates: estimates
             .into_iter()
             .map(|(_, estimate)| estimate)
             .collect(),
         cross_validation,
-        warnings,
-        findings: Vec::new(),
-        verdicts: Vec::new(),
-        thresholds: verdict::Thresholds::default(),
-        tracking: Vec::new(),
-        settings: settings.clone(),
-        figures,
     })
 }
 
@@ -307,7 +315,10 @@ fn projections(model: &dyn Model, settings: &Settings) -> Vec<Projection> {
 #[derive(Default)]
 struct HeldOut {
     validations: Vec<CrossValidation>,
+    /// The number of the projection of each.
+    owners: Vec<usize>,
     motions: Vec<figures::RunFigures>,
+    findings: Vec<verdict::Finding>,
     warnings: Vec<String>,
 }
 
@@ -347,21 +358,23 @@ fn cross_validate(
         let run = log.name();
         let report = |done, samples| progress(Progress::Validation { run, done, samples });
         match validate(&observer, log, &candidates, &report) {
-            Ok((validations, motion)) => {
-                all.push((log.payload(), validations));
-                held_out.motions.push(motion);
+            Ok(validated) => {
+                all.push((log.payload(), validated.validations));
+                held_out.motions.push(validated.motion);
+                held_out.findings.extend(validated.findings);
             }
-            Err(error) => problems.extend(error.problems),
+            Err(error) => problems.extend(checks::explained(model, log, error).problems),
         }
     }
     Error::check(problems)?;
     // In the order of the estimates, each on all runs.
-    for (index, (_, estimate)) in estimates.iter().enumerate() {
+    for (index, (projection, estimate)) in estimates.iter().enumerate() {
         for (payload, validations) in &all {
             match &validations[index] {
                 Ok(validation) => {
                     let validation = CrossValidation::new(estimate, *payload, validation.clone());
                     held_out.validations.push(validation);
+                    held_out.owners.push(*projection);
                 }
                 Err(error) if estimate.stage == Stage::Base => {
                     let warning = format!("no cross-validation: {error}");
@@ -412,14 +425,6 @@ fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<String> {
         warnings.push(String::from(
             "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
         ));
-    }
-    for run in &prepared.runs {
-        if run.closure_residual > LARGEST_CLOSURE_RESIDUAL {
-            warnings.push(format!(
-                "{}: the actuator positions miss the closure of the loops by up to {:.3} m or rad; check the geometry and the offsets of the encoders",
-                run.name, run.closure_residual
-            ));
-        }
     }
     for other in others {
         let known = match prepared.payload {

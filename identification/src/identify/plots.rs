@@ -10,12 +10,12 @@ use super::{
     result::{CrossValidation, Estimate},
 };
 use crate::{
-    conditioning::least_norm,
+    conditioning::{least_norm, product},
     correlation::line_residual,
     error::Error,
     regression::{Projection, System},
     settings::Settings,
-    validation::{Series, platform_input, product},
+    validation::{Series, platform_input},
 };
 
 /// The plots of an identification. Each estimate comes with the number of its projection; `others` are

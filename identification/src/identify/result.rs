@@ -201,6 +201,8 @@ pub struct Estimate {
     pub residual_deviation: f64,
     /// Each line of Γ.
     pub lines: Vec<LineError>,
+    /// Weight of each line's equations; all 1 for ordinary least squares.
+    pub weights: Vec<f64>,
     /// Where actuators are kept: how badly they determine the platform at worst.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub partition: Option<PartitionCondition>,

@@ -127,6 +127,7 @@ impl Context<'_> {
             equations: estimation.equations,
             residual_deviation: estimation.residual_deviation,
             lines: estimation.lines,
+            weights: estimation.weights,
             partition: self.system.partition.clone(),
             removals,
             stop,

@@ -55,7 +55,7 @@ impl<'a> Forward<'a> {
 /// Walks from the home pose towards the first sample in small steps, so that its assembly mode is
 /// that of the home pose. Should the way lead outside the workspace, the pose stays at home, and
 /// the first sample is tried from there.
-fn approach(model: &dyn Model, first: &[f64], pose: &mut [f64]) {
+pub(crate) fn approach(model: &dyn Model, first: &[f64], pose: &mut [f64]) {
     let info = model.info();
     let mut home = vec![0.0; first.len()];
     if model

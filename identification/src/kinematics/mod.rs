@@ -13,12 +13,15 @@ use overact::{Function, Model, math::wrap_angle};
 
 use crate::{
     blocks::evaluate,
+    checks,
     data::Log,
     error::{Error, Problem},
+    identify::verdict::Finding,
     settings::Settings,
 };
 
 use forward::Forward;
+pub(crate) use forward::approach;
 use stream::{Derivatives, Stream};
 
 /// The motion of the platform in some successive samples of a run and the torques that belong to
@@ -144,6 +147,11 @@ impl<'a> Motions<'a> {
     #[must_use]
     pub fn done(&self) -> usize {
         self.stream.done()
+    }
+
+    /// What is suspicious in the raw numbers that have been gone through.
+    pub(crate) fn findings(self) -> Vec<Finding> {
+        checks::of_numbers(self.model, self.log, self.stream.into_monitor())
     }
 
     /// A motion without samples, to which blocks can be appended.

@@ -2,6 +2,7 @@
 //! block.
 
 use crate::{
+    checks::monitor::Monitor,
     data::{Log, Reader},
     error::Error,
     filters::{ZeroPhase, butterworth, central_differences},
@@ -25,6 +26,7 @@ pub(super) struct Derivatives {
 /// A log that is filtered and differentiated.
 pub(super) struct Stream<'a> {
     reader: Reader<'a>,
+    monitor: Monitor,
     filter: ZeroPhase,
     frequency: f64,
     samples: usize,
@@ -47,6 +49,7 @@ impl<'a> Stream<'a> {
         Ok(Self {
             filter: ZeroPhase::new(&filter, log.actuators(), log.samples())?,
             reader: log.reader()?,
+            monitor: Monitor::new(log.actuators(), frequency),
             frequency,
             samples: log.samples(),
             width: log.actuators(),
@@ -55,6 +58,11 @@ impl<'a> Stream<'a> {
             torques: Vec::new(),
             next: 0,
         })
+    }
+
+    /// What has been watched of the raw numbers.
+    pub(super) fn into_monitor(self) -> Monitor {
+        self.monitor
     }
 
     /// Number of samples that have been given out.
@@ -79,6 +87,7 @@ impl<'a> Stream<'a> {
             let Some(block) = self.reader.next()? else {
                 return Ok(None);
             };
+            self.monitor.take(&block);
             self.filter.push(&block.positions, &mut self.positions);
             self.torques.extend(block.torques);
         }

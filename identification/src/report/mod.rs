@@ -5,6 +5,7 @@
 //! the reader's choice of light or dark, and there is no script. Its sections are in files of their
 //! own in [`page`]; the plots' axes and lines are in the module `plot`.
 
+pub mod beside;
 pub mod numbers;
 pub mod page;
 mod plot;
@@ -12,6 +13,7 @@ pub mod published;
 pub mod terminal;
 pub mod units;
 
+pub use beside::beside;
 pub use numbers::numbers;
 pub use page::{Attachment, Contents, page};
 pub use published::Published;

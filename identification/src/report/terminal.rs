@@ -324,7 +324,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 }
 
 /// Rows under a header: the first column to the left, the others to the right.
-fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
+pub(super) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     let mut all = vec![
         header
             .iter()

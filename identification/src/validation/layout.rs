@@ -15,20 +15,23 @@ pub(super) struct Pair {
 }
 
 /// Measured torques, those freed of their internal part where there is redundancy, then for each
-/// candidate predicted torques, measured and predicted Γ.
+/// candidate predicted torques, measured and predicted Γ, and predicted torques by eq. (26).
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     n: usize,
     r: usize,
     candidates: usize,
+    /// Whether torques by eq. (26) are there.
+    closure: bool,
 }
 
 impl Layout {
-    pub(super) fn new(sizes: Sizes, candidates: usize) -> Self {
+    pub(super) fn new(sizes: Sizes, candidates: usize, closure: bool) -> Self {
         Self {
             n: sizes.actuators,
             r: sizes.dof,
             candidates,
+            closure,
         }
     }
 
@@ -40,7 +43,8 @@ impl Layout {
     /// The first value of a candidate.
     fn start(&self, candidate: usize) -> usize {
         let measured = if self.n > self.r { 2 * self.n } else { self.n };
-        measured + candidate * (self.n + 2 * self.r)
+        let closure = if self.closure { self.n } else { 0 };
+        measured + candidate * (self.n + 2 * self.r + closure)
     }
 
     /// Measured torques.
@@ -83,6 +87,26 @@ impl Layout {
         }
     }
 
+    /// Whether torques by eq. (26) are there.
+    pub(super) const fn closure(&self) -> bool {
+        self.closure
+    }
+
+    /// Torques by eq. (26).
+    pub(super) fn closure_torques(&self, candidate: usize) -> Option<Range<usize>> {
+        let start = self.start(candidate) + self.n + 2 * self.r;
+        self.closure.then_some(start..start + self.n)
+    }
+
+    /// A torque against that of eq. (26).
+    pub(super) fn closure_torque(&self, candidate: usize, actuator: usize) -> Option<Pair> {
+        let predicted = self.closure_torques(candidate)?.start + actuator;
+        Some(Pair {
+            measured: actuator,
+            predicted,
+        })
+    }
+
     /// All pairs.
     fn pairs(&self) -> Vec<Pair> {
         (0..self.candidates)
@@ -91,7 +115,8 @@ impl Layout {
                 let projected =
                     (0..self.n).filter_map(move |i| self.projected_torque(candidate, i));
                 let lines = (0..self.r).map(move |line| self.line(candidate, line));
-                torques.chain(projected).chain(lines)
+                let closure = (0..self.n).filter_map(move |i| self.closure_torque(candidate, i));
+                torques.chain(projected).chain(lines).chain(closure)
             })
             .collect()
     }

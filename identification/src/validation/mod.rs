@@ -10,18 +10,19 @@
 
 mod layout;
 
-use overact::{Function, Info};
+use overact::{Function, Info, Model};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::{
     blocks::{BLOCK, slice},
-    conditioning::least_norm,
+    checks,
+    conditioning::{least_multipliers, least_norm, product, transposed_product},
     data::Log,
     error::Error,
     estimate::{LineError, overall, percent},
     filters::Decimator,
-    identify::figures::RunFigures,
+    identify::{figures::RunFigures, verdict::Finding},
     kinematics::{Motion, Motions},
     observation::{Chunk, Observer, Points},
     regression::Projection,
@@ -91,8 +92,18 @@ pub(crate) struct Candidate<'a> {
     pub(crate) values: &'a [f64],
 }
 
+/// What a run that is held out tells.
+pub(crate) struct Validated {
+    /// For each candidate its comparison, or why it has none.
+    pub(crate) validations: Vec<Result<Validation, Error>>,
+    /// The motion of the run, for plots.
+    pub(crate) motion: RunFigures,
+    /// What is suspicious in it.
+    pub(crate) findings: Vec<Finding>,
+}
+
 /// Compares a run with the predictions of several sets of parameters. A projection that is singular on
-/// the run has no comparison, but an error. The motion of the run is given, too, for plots.
+/// the run has no comparison, but an error.
 ///
 /// # Errors
 /// A run that does not fit, a sample outside the workspace, a file that can't be read.
@@ -101,19 +112,21 @@ pub(crate) fn validate(
     log: &Log,
     candidates: &[Candidate<'_>],
     progress: &dyn Fn(usize, usize),
-) -> Result<(Vec<Result<Validation, Error>>, RunFigures), Error> {
+) -> Result<Validated, Error> {
     let info = observer.model.info();
     let mut motions = Motions::new(observer.model, log, observer.settings)?;
     let samples = motions.samples();
     let decimator = Decimator::new(observer.settings.decimation)?;
-    let layout = Layout::new(info.sizes, candidates.len());
+    let layout = Layout::new(info.sizes, candidates.len(), offers_closure(observer.model));
     let mut stream = decimator.stream(layout.width(), samples)?;
     let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
     let plan = Plan::new(decimator.kept(samples), 0);
     let stride = plan.stride();
     let mut points = Points::new(observer, log, &decimator, samples, &plan);
     let mut sums = Sums::new(&layout, stride);
+    let mut closure_residual = 0.0_f64;
     while let Some(motion) = motions.next()? {
+        closure_residual = closure_residual.max(motion.closure_residual);
         let chunks = observer.chunks(&motion, &mut failed)?;
         let rows: Vec<Vec<f64>> = chunks
             .par_iter()
@@ -159,7 +172,11 @@ pub(crate) fn validate(
     };
     points.partitions(observer.projections);
     let validations = candidates.iter().enumerate().map(of_candidate).collect();
-    Ok((validations, points.figures))
+    Ok(Validated {
+        validations,
+        motion: points.figures,
+        findings: checks::of_run(observer.model, log, motions, closure_residual)?,
+    })
 }
 
 /// The comparison of one candidate.
@@ -201,10 +218,13 @@ fn validation(
         relative_error_percent: percent(residual_norm, measured_norm),
         table: torque_errors
             .iter()
-            .map(|error| TorqueComparison {
+            .enumerate()
+            .map(|(actuator, error)| TorqueComparison {
                 actuator: error.name.clone(),
                 least_norm_percent: error.relative_error_percent,
-                closure_percent: None,
+                closure_percent: layout
+                    .closure_torque(candidate, actuator)
+                    .map(|pair| sums.error(&error.name, pair).relative_error_percent),
             })
             .collect(),
         projected_torques: errors(&torques(Layout::projected_torque), actuators),
@@ -233,6 +253,10 @@ fn rows(
         .model
         .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
         .map_err(|error| motion.outside(first + error.sample, error.error))?;
+    let closures = match layout.closure() {
+        true => closures(observer.model, pose, count),
+        false => None,
+    };
     let torques = slice(&motion.torques, n, first, count);
     let mut rows = vec![0.0; count * layout.width()];
     for (sample, row) in rows.chunks_exact_mut(layout.width()).enumerate() {
@@ -268,13 +292,39 @@ fn rows(
             let place = &mut row[layout.predicted_torques(number)];
             if *projection == Projection::Joints {
                 place.copy_from_slice(&predicted);
-            } else {
-                let gamma = platform_input(projection, &info, jacobian, &predicted);
-                product(&distribution, &gamma, place);
+                continue;
+            }
+            let gamma = platform_input(projection, &info, jacobian, &predicted);
+            product(&distribution, &gamma, place);
+            if let (Some(range), Some(closures)) = (layout.closure_torques(number), &closures) {
+                let closure = slice(closures, n * n, sample, 1);
+                if let Some(other) = least_multipliers(jacobian, closure, r) {
+                    product(&other, &gamma, &mut row[range]);
+                }
             }
         }
     }
     Ok(rows)
+}
+
+/// B_p of the closure at some poses, n x n each, where the model offers it.
+fn closures(model: &dyn Model, poses: &[f64], count: usize) -> Option<Vec<f64>> {
+    let sizes = model.info().sizes;
+    let mut joints = vec![0.0; count * sizes.joints];
+    model
+        .evaluate(Function::Joints, &[poses], &mut joints)
+        .ok()?;
+    let mut closures = vec![0.0; count * sizes.actuators * sizes.actuators];
+    model
+        .evaluate(Function::ClosureActuatorJacobian, &[&joints], &mut closures)
+        .ok()?;
+    Some(closures)
+}
+
+/// Whether the torques of eq. (26) can be told: the robot is redundant and has its closure matrices.
+fn offers_closure(model: &dyn Model) -> bool {
+    let info = model.info();
+    info.sizes.actuators > info.sizes.dof && closures(model, info.home_pose, 1).is_some()
 }
 
 /// Γ¹ of inputs Γ in the projection: themselves on the platform, J_aᵀ Γ² on kept actuators.
@@ -292,23 +342,4 @@ pub(crate) fn platform_input(
         .zip(inputs)
         .for_each(|(&k, value)| torques[k] = *value);
     transposed_product(jacobian, &torques, info.sizes.dof)
-}
-
-/// Product of a matrix (rows of the vector's length) with a vector.
-pub(crate) fn product(matrix: &[f64], vector: &[f64], result: &mut [f64]) {
-    for (row, result) in matrix.chunks_exact(vector.len()).zip(result) {
-        *result = row.iter().zip(vector).map(|(a, b)| a * b).sum();
-    }
-}
-
-/// Product of the transpose of a matrix of `r` columns with a vector: Γ¹ = J_p^invᵀ τ.
-pub(crate) fn transposed_product(matrix: &[f64], vector: &[f64], r: usize) -> Vec<f64> {
-    let mut result = vec![0.0; r];
-    for (row, factor) in matrix.chunks_exact(r).zip(vector) {
-        result
-            .iter_mut()
-            .zip(row)
-            .for_each(|(result, a)| *result += a * factor);
-    }
-    result
 }

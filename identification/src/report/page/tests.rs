@@ -93,6 +93,7 @@ fn estimate(model: &'static str, stage: Stage) -> Estimate {
         equations: 1000,
         residual_deviation: 1.0,
         lines: vec![LineError::new("x", 1.0, 40.0, 1000)],
+        weights: vec![1.0],
         partition: Some(PartitionCondition {
             crossings: 0,
             largest: 31.0,

@@ -1,0 +1,102 @@
+//! Table 4: how well the virtual robot follows held-out trajectories, with a PD controller alone and
+//! with the torques that the identified parameters ask for.
+
+use crate::{
+    InterpretedRobot, commands::runs, commands::simulate, experiment::experiment, failure::Failure,
+    load::Robot,
+};
+use overact::Model;
+use overact_identification::{Estimate, Identification, Stage, TrackingError};
+use overact_simulation::Experiment;
+
+/// Lets every controller follow the runs that are held out. Empty where there are none, or where the
+/// description has no virtual robot.
+///
+/// # Errors
+/// A virtual experiment that can't be made.
+pub(super) fn tracking(
+    robot: &Robot,
+    served: &InterpretedRobot,
+    result: &Identification,
+    as_json: bool,
+) -> Result<Vec<TrackingError>, Failure> {
+    if robot.description.experiment.is_none() {
+        return Ok(Vec::new());
+    }
+    let mut names: Vec<String> = Vec::new();
+    for one in &result.cross_validation {
+        if !names.contains(&one.run) {
+            names.push(one.run.clone());
+        }
+    }
+    // Measured runs have names of files: then those that the description holds out.
+    let (mut plain, _) = experiment(robot, &served.info())?;
+    if !plain.runs.iter().any(|run| names.contains(&run.name)) {
+        names = runs::held_out(robot);
+    }
+    plain.runs.retain(|run| names.contains(&run.name));
+    if plain.runs.is_empty() {
+        return Ok(Vec::new());
+    }
+    plain.feed_forward = false;
+    let mut controllers = vec![(String::from("pd"), plain.clone())];
+    for estimate in last_estimates(result) {
+        let name = match estimate.model {
+            "platform" => "computed torque, case 1",
+            "actuators" => "computed torque, case 2",
+            _ => "computed torque",
+        };
+        let computed = Experiment {
+            feed_forward: true,
+            nominal_parameters: Some(standard(served, result, estimate)),
+            ..plain.clone()
+        };
+        controllers.push((name.to_owned(), computed));
+    }
+    let mut all = Vec::new();
+    for (controller, experiment) in controllers {
+        for record in simulate::records(robot, served, &experiment, as_json)? {
+            all.push(TrackingError {
+                run: record.name,
+                controller: controller.clone(),
+                actuators: record.actuators,
+                largest: record.tracking_error,
+            });
+        }
+    }
+    // Run by run, as the table has it.
+    all.sort_by_key(|one| names.iter().position(|name| *name == one.run));
+    Ok(all)
+}
+
+/// The last stage of each model.
+fn last_estimates(result: &Identification) -> Vec<&Estimate> {
+    let mut last: Vec<&Estimate> = Vec::new();
+    for estimate in &result.estimates {
+        match last
+            .last_mut()
+            .filter(|known| known.model == estimate.model)
+        {
+            Some(known) if estimate.stage == Stage::Essential => *known = estimate,
+            Some(_) => {}
+            None => last.push(estimate),
+        }
+    }
+    last
+}
+
+/// Standard parameters with the same model: each base parameter stands on the one that is kept, the
+/// regrouped ones are zero.
+fn standard(served: &InterpretedRobot, result: &Identification, estimate: &Estimate) -> Vec<f64> {
+    let info = served.info();
+    let all = info.parameters.iter().chain(info.payload_parameters);
+    let value = |name: &str| -> f64 {
+        let mut parameters = estimate.parameters.iter();
+        let own = parameters.find(|one| {
+            let base = result.base_parameters.get(one.column);
+            base.is_some_and(|base| base.parameter == name)
+        });
+        own.map_or(0.0, |one| one.value)
+    };
+    all.map(|parameter| value(parameter.name)).collect()
+}

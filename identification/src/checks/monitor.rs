@@ -1,0 +1,377 @@
+//! What is suspicious in the raw numbers of a run, told while it is gone through: clipped torques,
+//! encoders that are stuck, samples that are lost, a robot that stands still.
+
+use super::{
+    peaks,
+    statistics::{Extreme, Histogram, Means},
+};
+use crate::{
+    data::Samples,
+    identify::verdict::{Finding, FindingKind},
+};
+
+/// Equal values in a row that count as a rest of a signal (s).
+const REST_SECONDS: f64 = 0.1;
+
+/// Equal values in a row that count, at least.
+const REST_SAMPLES: usize = 20;
+
+/// Samples over which the speed before a rest is told.
+const SPEED_SAMPLES: usize = 10;
+
+/// Part of an actuator's range, or of its speed, that is motion beyond doubt.
+const CLEAR_MOTION: f64 = 0.05;
+
+/// Part of the usual largest step by which a step differs from the one before where samples are lost.
+const LOST_STEP: f64 = 0.5;
+
+/// Times by which it exceeds the encoder's resolution, and the usual changes of steps.
+const LOST_RATIO: f64 = 4.0;
+
+/// A range of less than so many steps between samples is noise: the robot stands still.
+const STILL_STEPS: f64 = 15.0;
+
+/// Part of the samples that lie at an extreme of a torque where it is clipped, and how much more often
+/// the extreme occurs than the value next to it: the peaks of quantised signals reach a ratio of 3.
+const CLIPPED_PART: f64 = 1e-3;
+const CLIPPED_RATIO: usize = 10;
+
+/// Fewest samples at an extreme.
+const FEWEST_CLIPPED: usize = 10;
+
+/// Follows the raw positions and torques of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Monitor {
+    frequency: f64,
+    samples: usize,
+    positions: Vec<Position>,
+    torques: Vec<[Extreme; 2]>,
+    /// Means of the torques over a few samples, in the beginning of the run.
+    means: Means,
+    /// The last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
+    recent: Vec<Vec<f64>>,
+}
+
+/// What is known of the positions of an actuator.
+#[derive(Debug, Clone, Default)]
+struct Position {
+    low: f64,
+    high: f64,
+    /// Σ of the squares of steps between samples.
+    steps: f64,
+    /// Sizes of steps and of their changes.
+    sizes: Histogram,
+    changes: Histogram,
+    /// The smallest step that is not zero: the resolution, if it is one.
+    smallest: Option<f64>,
+    /// The largest changes of steps, with their samples.
+    jumps: Vec<(f64, usize)>,
+    /// Largest |q_k - q_(k-10)|.
+    speed: f64,
+    /// Since which sample the present value has not changed, and the bounds of all positions in the
+    /// meantime.
+    since: usize,
+    bounds: Vec<(f64, f64)>,
+    /// |q_k - q_(k-10)| when the rest began.
+    speed_before: f64,
+    /// The rest in which another actuator moved most.
+    rest: Option<Rest>,
+}
+
+/// Equal positions in a row.
+#[derive(Debug, Clone)]
+struct Rest {
+    first: usize,
+    samples: usize,
+    /// By how much each actuator moved.
+    moved: Vec<f64>,
+    speed_before: f64,
+}
+
+impl Monitor {
+    /// A monitor for a run of `actuators` sampled at `frequency` (Hz).
+    pub(crate) fn new(actuators: usize, frequency: f64) -> Self {
+        Self {
+            frequency,
+            samples: 0,
+            positions: vec![Position::default(); actuators],
+            torques: vec![[Extreme::default(); 2]; actuators],
+            means: Means::new(actuators, frequency),
+            recent: Vec::new(),
+        }
+    }
+
+    /// Takes the next samples.
+    pub(crate) fn take(&mut self, samples: &Samples) {
+        let n = self.positions.len();
+        let rows = samples.positions.chunks_exact(n);
+        for (positions, torques) in rows.zip(samples.torques.chunks_exact(n)) {
+            for (position, actuator) in self.positions.iter_mut().zip(0..) {
+                position.take(actuator, self.samples, positions, &self.recent);
+            }
+            self.means.take(torques);
+            for ([low, high], torque) in self.torques.iter_mut().zip(torques) {
+                high.take(*torque);
+                low.take(-torque);
+            }
+            if self.recent.len() > SPEED_SAMPLES {
+                self.recent.rotate_left(1);
+                self.recent[SPEED_SAMPLES].copy_from_slice(positions);
+            } else {
+                self.recent.push(positions.to_vec());
+            }
+            self.samples += 1;
+        }
+    }
+
+    /// Ends the rests that last until the end.
+    fn finish(&mut self) {
+        for position in &mut self.positions {
+            position.end_rest(self.samples);
+        }
+    }
+
+    /// The largest magnitude of each actuator's positions (m, rad).
+    pub(crate) fn magnitudes(&self) -> Vec<f64> {
+        let magnitude = |one: &Position| one.high.abs().max(one.low.abs());
+        self.positions.iter().map(magnitude).collect()
+    }
+
+    /// What is suspicious in a run of actuators with these names. Where the loops couple all actuators
+    /// (`coupled`), one that rests while others move is stuck; without loops it may be held.
+    pub(crate) fn findings(mut self, run: &str, names: &[&str], coupled: bool) -> Vec<Finding> {
+        self.finish();
+        let mut findings = self.clipped(run, names);
+        for finding in peaks::findings(run, names, &self.means.rows) {
+            if findings
+                .iter()
+                .all(|other| other.actuator != finding.actuator)
+            {
+                findings.push(finding);
+            }
+        }
+        if self.stands_still() {
+            findings.push(Finding {
+                kind: FindingKind::Standstill,
+                run: Some(run.to_owned()),
+                actuator: None,
+                message: String::from(
+                    "the robot stands still: the positions change by no more than their noise, so the run tells nothing about inertia; leave it out",
+                ),
+            });
+            return findings;
+        }
+        let stuck: Vec<Option<String>> = (0..names.len())
+            .map(|actuator| self.stuck(actuator, coupled))
+            .collect();
+        for (name, message) in names.iter().zip(&stuck) {
+            findings.extend(message.iter().map(|message| Finding {
+                kind: FindingKind::StuckEncoder,
+                run: Some(run.to_owned()),
+                actuator: Some((*name).to_owned()),
+                message: message.clone(),
+            }));
+        }
+        if stuck.iter().all(Option::is_none) {
+            findings.extend(self.lost(run, names));
+        }
+        findings
+    }
+
+    /// Whether no position moves beyond its noise.
+    fn stands_still(&self) -> bool {
+        let steps = self.samples.saturating_sub(1).max(1) as f64;
+        self.positions.iter().all(|one| {
+            let step = (one.steps / steps).sqrt();
+            one.high - one.low <= STILL_STEPS * step
+        })
+    }
+
+    /// What is told of an encoder that is stuck.
+    fn stuck(&self, actuator: usize, coupled: bool) -> Option<String> {
+        let own = &self.positions[actuator];
+        let long = |rest: &&Rest| rest.samples as f64 >= REST_SECONDS * self.frequency;
+        let rest = own.rest.as_ref().filter(long)?;
+        let others = rest.moved.iter().zip(&self.positions).enumerate();
+        let others_move =
+            others
+                .filter(|(other, _)| *other != actuator)
+                .any(|(_, (moved, position))| {
+                    *moved > CLEAR_MOTION * (position.high - position.low).max(0.0)
+                });
+        // A joint needs time to stop; a signal does not.
+        let stops_dead = rest.speed_before > 4.0 * CLEAR_MOTION * own.speed && own.speed > 0.0;
+        ((coupled && others_move) || stops_dead).then(|| {
+            format!(
+                "the position does not change from t = {:.3} s on for {:.3} s, {}; the encoder or its reading is stuck: repair it, or leave the run out",
+                rest.first as f64 / self.frequency,
+                rest.samples as f64 / self.frequency,
+                if others_move {
+                    "while other actuators move"
+                } else {
+                    "from one sample to the next in full motion"
+                }
+            )
+        })
+    }
+
+    /// Steps that are too large, in any actuator.
+    fn lost(&self, run: &str, names: &[&str]) -> Option<Finding> {
+        let mut samples: Vec<usize> = Vec::new();
+        let mut actuators: Vec<&str> = Vec::new();
+        for (one, name) in self.positions.iter().zip(names) {
+            let Some(resolution) = one.smallest else {
+                continue;
+            };
+            let usual = one.sizes.quantile(0.99);
+            let least = (LOST_STEP * usual)
+                .max(LOST_RATIO * resolution)
+                .max(LOST_RATIO * one.changes.quantile(0.99));
+            let jumps = one.jumps.iter().filter(|(size, _)| *size > least);
+            let before = samples.len();
+            samples.extend(jumps.map(|(_, sample)| *sample));
+            if samples.len() > before {
+                actuators.push(name);
+            }
+        }
+        let first = *samples.iter().min()?;
+        Some(Finding {
+            kind: FindingKind::DroppedSamples,
+            run: Some(run.to_owned()),
+            actuator: match actuators[..] {
+                [one] if names.len() > 1 => Some(one.to_owned()),
+                _ => None,
+            },
+            message: format!(
+                "positions jump between samples, first at t = {:.4} s (sample {first}): samples are lost or repeated; record the run anew, or cut it there",
+                first as f64 / self.frequency
+            ),
+        })
+    }
+
+    /// Torques that lie at an extreme too often.
+    fn clipped(&self, run: &str, names: &[&str]) -> Vec<Finding> {
+        let clipped = |extreme: &Extreme| {
+            let enough = FEWEST_CLIPPED.max((CLIPPED_PART * self.samples as f64) as usize);
+            extreme.count >= enough && extreme.count > CLIPPED_RATIO * extreme.next_count
+                // A torque that never changes is no peak.
+                && extreme.count < self.samples
+        };
+        let mut findings = Vec::new();
+        for ([low, high], name) in self.torques.iter().zip(names) {
+            let ends = [(low, -1.0), (high, 1.0)];
+            let found: Vec<(usize, f64)> = ends
+                .iter()
+                .filter(|(extreme, _)| clipped(extreme))
+                .map(|(extreme, sign)| (extreme.count, sign * extreme.value))
+                .collect();
+            if found.is_empty() {
+                continue;
+            }
+            let samples: usize = found.iter().map(|(count, _)| count).sum();
+            let levels: Vec<String> = found
+                .iter()
+                .map(|(_, value)| crate::report::significant(*value, 5))
+                .collect();
+            findings.push(clipping(
+                run,
+                name,
+                samples as f64 / self.samples as f64,
+                &levels,
+            ));
+        }
+        findings
+    }
+}
+
+/// The finding of a torque that is clipped for a part of the samples.
+pub(super) fn clipping(run: &str, actuator: &str, part: f64, levels: &[String]) -> Finding {
+    Finding {
+        kind: FindingKind::ClippedTorque,
+        run: Some(run.to_owned()),
+        actuator: Some(actuator.to_owned()),
+        message: format!(
+            "the torque is clipped at {} for {:.1} % of the time: the drive or its measurement saturates, and parameters come out too small; move less fast, or leave the run out",
+            levels.join(" and "),
+            100.0 * part
+        ),
+    }
+}
+
+impl Position {
+    /// Takes the position of the actuator in the row of sample `sample`; `recent` are the rows before.
+    fn take(&mut self, actuator: usize, sample: usize, row: &[f64], recent: &[Vec<f64>]) {
+        let position = row[actuator];
+        let Some(last) = recent.last() else {
+            (self.low, self.high) = (position, position);
+            self.bounds = row.iter().map(|q| (*q, *q)).collect();
+            return;
+        };
+        self.low = self.low.min(position);
+        self.high = self.high.max(position);
+        let step = position - last[actuator];
+        self.steps += step * step;
+        self.sizes.take(step.abs());
+        if step != 0.0 {
+            let smallest = self.smallest.unwrap_or(f64::INFINITY);
+            self.smallest = Some(smallest.min(step.abs()));
+        }
+        if let Some(before) = recent.len().checked_sub(2) {
+            let change = (step - (last[actuator] - recent[before][actuator])).abs();
+            self.changes.take(change);
+            self.note_jump(change, sample);
+        }
+        if recent.len() > SPEED_SAMPLES {
+            self.speed = self.speed.max((position - recent[0][actuator]).abs());
+        }
+        if step != 0.0 {
+            self.end_rest(sample);
+            self.since = sample;
+            let bounds = self.bounds.iter_mut().zip(row);
+            bounds.for_each(|(bounds, q)| *bounds = (*q, *q));
+            return;
+        }
+        for ((low, high), q) in self.bounds.iter_mut().zip(row) {
+            (*low, *high) = (low.min(*q), high.max(*q));
+        }
+        if self.since + 1 == sample {
+            // The first equal value: how fast was it before?
+            self.speed_before = recent
+                .first()
+                .filter(|_| recent.len() > SPEED_SAMPLES)
+                .map_or(0.0, |first| (position - first[actuator]).abs());
+        }
+    }
+
+    /// Keeps the largest changes.
+    fn note_jump(&mut self, size: f64, sample: usize) {
+        const KEPT: usize = 16;
+        let place = self.jumps.partition_point(|(other, _)| *other >= size);
+        if place < KEPT {
+            self.jumps.insert(place, (size, sample));
+            self.jumps.truncate(KEPT);
+        }
+    }
+
+    /// Ends a rest before sample `end`.
+    fn end_rest(&mut self, end: usize) {
+        let samples = end - self.since;
+        if samples < REST_SAMPLES {
+            return;
+        }
+        let moved: Vec<f64> = self.bounds.iter().map(|(low, high)| high - low).collect();
+        let most = |moved: &[f64]| moved.iter().copied().fold(0.0, f64::max);
+        let rest = Rest {
+            first: self.since,
+            samples,
+            speed_before: self.speed_before,
+            moved,
+        };
+        let is_worse = self.rest.as_ref().is_none_or(|known| {
+            (most(&rest.moved), rest.samples) > (most(&known.moved), known.samples)
+        });
+        if is_worse {
+            self.rest = Some(rest);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Positions that contradict the loops, and what would make them close: degrees, two columns that are
+//! swapped, one of the wrong sign.
+
+use std::f64::consts::PI;
+
+use overact::{Function, Model, math::wrap_angle};
+
+use crate::{
+    data::Log,
+    error::Error,
+    identify::verdict::{Finding, FindingKind, Thresholds},
+    kinematics::approach,
+};
+
+/// Rows of a run that are looked at, and their distance in time (s).
+const ROWS: usize = 200;
+const INTERVAL: f64 = 0.01;
+
+/// A change that explains the positions leaves this part of the miss, at most.
+const EXPLAINED: f64 = 0.1;
+
+/// What may have happened to positions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// Angles are in degrees.
+    Degrees,
+    /// Two actuators are exchanged.
+    Swapped(usize, usize),
+    /// An actuator counts backwards.
+    Reversed(usize),
+}
+
+impl Fault {
+    /// All faults of a robot.
+    pub(crate) fn all(model: &dyn Model) -> Vec<Self> {
+        let info = model.info();
+        let n = info.sizes.actuators;
+        let mut faults = Vec::new();
+        if info.actuator_is_revolute.contains(&true) {
+            faults.push(Self::Degrees);
+        }
+        faults.extend((0..n).flat_map(|i| (i + 1..n).map(move |j| Self::Swapped(i, j))));
+        faults.extend((0..n).map(Self::Reversed));
+        faults
+    }
+
+    /// Takes the fault back in rows of positions.
+    pub(crate) fn repair(self, model: &dyn Model, positions: &mut [f64]) {
+        let info = model.info();
+        for row in positions.chunks_exact_mut(info.sizes.actuators) {
+            match self {
+                Self::Degrees => {
+                    let angles = row.iter_mut().zip(info.actuator_is_revolute);
+                    angles
+                        .filter(|(_, revolute)| **revolute)
+                        .for_each(|(q, _)| *q *= PI / 180.0);
+                }
+                Self::Swapped(i, j) => row.swap(i, j),
+                Self::Reversed(i) => row[i] = -row[i],
+            }
+        }
+    }
+
+    /// What is told of it in a run; `so` says what speaks for it.
+    pub(crate) fn finding(self, model: &dyn Model, run: &str, so: &str) -> Finding {
+        let info = model.info();
+        let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
+        let (kind, actuator, message) = match self {
+            Self::Degrees => (
+                FindingKind::Degrees,
+                None,
+                String::from(
+                    "the positions look like degrees: give `position_scale = \"1 deg\"` in the table [data]",
+                ),
+            ),
+            Self::Swapped(i, j) => (
+                FindingKind::SwappedColumns,
+                Some(name(i)),
+                format!(
+                    "the positions of `{}` and `{}` look swapped: check the columns of the log",
+                    name(i),
+                    name(j)
+                ),
+            ),
+            Self::Reversed(i) => (
+                FindingKind::WrongSign,
+                Some(name(i)),
+                format!(
+                    "the position of `{}` looks reversed: check its sign (a negative `position_scale` in the table [data] turns it round)",
+                    name(i)
+                ),
+            ),
+        };
+        Finding {
+            kind,
+            run: Some(run.to_owned()),
+            actuator: actuator.map(str::to_owned),
+            message: format!("{message}; {so}"),
+        }
+    }
+}
+
+/// What would make the loops close in a run that contradicts them, if one change does.
+///
+/// # Errors
+/// A file that can't be read any more.
+pub(crate) fn explanation(model: &dyn Model, log: &Log) -> Result<Option<Finding>, Error> {
+    let rows = rows(log)?;
+    let tolerance = Thresholds::default().closure_residual;
+    let miss = miss(model, &rows);
+    if miss.is_some_and(|miss| miss <= tolerance) {
+        return Ok(None);
+    }
+    let repaired = |fault: &Fault| {
+        let mut rows = rows.clone();
+        fault.repair(model, &mut rows);
+        self::miss(model, &rows)
+    };
+    let misses = Fault::all(model).into_iter().filter_map(|fault| {
+        let left = repaired(&fault)?;
+        let explains = left <= tolerance && miss.is_none_or(|miss| left <= EXPLAINED * miss);
+        explains.then_some((fault, left))
+    });
+    let best = misses.min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(best.map(|(fault, left)| {
+        let before = miss.map_or_else(
+            || String::from("where no pose is found now"),
+            |miss| format!("instead of missing by {miss:.3} m or rad"),
+        );
+        let so = format!("then the loops close to {left:.1e} m or rad {before}");
+        fault.finding(model, log.name(), &so)
+    }))
+}
+
+/// Positions at the beginning of a run, samples x n.
+fn rows(log: &Log) -> Result<Vec<f64>, Error> {
+    let n = log.actuators();
+    let stride = ((INTERVAL * log.sampling_frequency()) as usize).max(1);
+    let mut rows = Vec::new();
+    let mut reader = log.reader()?;
+    let mut sample = 0_usize;
+    while let Some(block) = reader.next()? {
+        for row in block.positions.chunks_exact(n) {
+            if sample.is_multiple_of(stride) {
+                rows.extend_from_slice(row);
+            }
+            sample += 1;
+        }
+        if rows.len() >= ROWS * n {
+            rows.truncate(ROWS * n);
+            break;
+        }
+    }
+    Ok(rows)
+}
+
+/// The largest distance of positions from those that their poses ask for, or `None` where one has no
+/// pose.
+fn miss(model: &dyn Model, rows: &[f64]) -> Option<f64> {
+    let info = model.info();
+    let n = info.sizes.actuators;
+    let mut pose = info.home_pose.to_vec();
+    approach(model, rows.get(..n)?, &mut pose);
+    let mut reached = vec![0.0; n];
+    let mut largest = 0.0_f64;
+    for row in rows.chunks_exact(n) {
+        model.pose_from_actuators(row, &mut pose).ok()?;
+        model
+            .evaluate(Function::ActuatorPositions, &[&pose], &mut reached)
+            .ok()?;
+        for ((q, reached), revolute) in row.iter().zip(&reached).zip(info.actuator_is_revolute) {
+            let difference = if *revolute {
+                wrap_angle(q - reached)
+            } else {
+                q - reached
+            };
+            largest = largest.max(difference.abs());
+        }
+    }
+    Some(largest)
+}

@@ -1,0 +1,352 @@
+//! Torques that contradict the model, and which single fault would explain them: a drive of the wrong
+//! sign or gain, two that are swapped, a run that is labelled with the wrong payload.
+//!
+//! Any linear change of the torques changes Γ¹ = Σ_i J_iᵀ τ_i into a combination of the products
+//! J_iᵀ τ_j, and what the model can't explain of a combination follows from the R factor of
+//! [W, J_1ᵀ τ_1, J_1ᵀ τ_2, ...]. So one pass over the beginning of the runs judges all faults of
+//! torques. Faults of positions that the loops do not tell need a pass of their own each.
+
+use nalgebra::{DMatrix, DVector};
+use overact::{Function, Model};
+
+use super::positions;
+use crate::{
+    base::{BaseParameters, PayloadUse, base_parameters},
+    blocks::{BLOCK, slice},
+    columns::ColumnSet,
+    data::Log,
+    error::Error,
+    factor::Factor,
+    filters::Decimator,
+    identify::verdict::{Finding, FindingKind},
+    kinematics::Motions,
+    settings::Settings,
+};
+
+/// A fault that explains the torques leaves this part of the error, at most, ...
+const EXPLAINED: f64 = 0.5;
+
+/// ... and takes away this part of the inputs, at least.
+const WORTHWHILE: f64 = 0.03;
+
+/// Gains by which a drive may be wrong; the first is the wrong sign.
+const GAINS: [f64; 11] = [
+    -1.0, 1e-3, 0.01, 0.1, 0.2, 0.5, 2.0, 5.0, 10.0, 100.0, 1000.0,
+];
+
+/// What may have happened.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fault {
+    /// The torque of a drive has to be multiplied by a factor.
+    Gain(usize, f64),
+    /// The torques of two drives are exchanged.
+    Swapped(usize, usize),
+    /// The payload of a run is labelled wrongly.
+    Label(usize),
+}
+
+/// What would explain the torques of runs, if one fault does.
+///
+/// # Errors
+/// As [`Motions::next`]; the runs have been gone through before.
+pub(crate) fn explanation(
+    model: &dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+) -> Result<Option<Finding>, Error> {
+    let info = model.info();
+    let n = info.sizes.actuators;
+    let columns = Columns::new(model, settings)?;
+    let doubt = columns.doubt(model, runs, settings)?;
+    let before = doubt.error(None);
+    let mut faults: Vec<Fault> = Vec::new();
+    faults.extend((0..n).flat_map(|i| GAINS.map(|gain| Fault::Gain(i, gain))));
+    faults.extend((0..n).flat_map(|i| (i + 1..n).map(move |j| Fault::Swapped(i, j))));
+    if !info.payload_parameters.is_empty() && runs.len() > 1 {
+        faults.extend((0..runs.len()).map(Fault::Label));
+    }
+    let errors = faults
+        .into_iter()
+        .map(|fault| (fault, doubt.error(Some(fault))));
+    let best = errors.min_by(|a, b| a.1.total_cmp(&b.1));
+    let explains =
+        |(_, after): &(Fault, f64)| *after < EXPLAINED * before && before - after > WORTHWHILE;
+    let so = |after: f64| {
+        format!(
+            "then {:.1} % of the inputs are left unexplained, instead of {:.1} %",
+            100.0 * after,
+            100.0 * before
+        )
+    };
+    if let Some((fault, after)) = best.filter(explains) {
+        return Ok(Some(finding(model, runs, fault, &so(after))));
+    }
+    // What happened to positions happened in all runs.
+    let positions = positions::Fault::all(model)
+        .into_iter()
+        .filter_map(|fault| {
+            let repaired = |log: &Log| {
+                let (mut positions, torques) = log.load()?;
+                fault.repair(model, &mut positions);
+                let (name, frequency) = (log.name(), log.sampling_frequency());
+                Log::new(name, frequency, n, positions, torques, log.payload())
+            };
+            let runs: Result<Vec<Log>, Error> = runs.iter().map(repaired).collect();
+            // A change that leads out of the workspace explains nothing.
+            let doubt = columns.doubt(model, &runs.ok()?, settings).ok()?;
+            Some((fault, doubt.error(None)))
+        });
+    let best = positions.min_by(|a, b| a.1.total_cmp(&b.1));
+    let explains = |(_, after): &(positions::Fault, f64)| {
+        *after < EXPLAINED * before && before - after > WORTHWHILE
+    };
+    Ok(best.filter(explains).map(|(fault, after)| Finding {
+        run: None,
+        ..fault.finding(model, "", &so(after))
+    }))
+}
+
+/// What is told of a fault; `so` says what speaks for it.
+fn finding(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Finding {
+    let info = model.info();
+    let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
+    let (kind, run, actuator, message) = match fault {
+        Fault::Gain(i, gain) if gain < 0.0 => (
+            FindingKind::WrongSign,
+            None,
+            Some(i),
+            format!(
+                "the torque of `{}` looks reversed: check the sign of its drive (a negative `torque_gain` in the table [data] turns it round)",
+                name(i)
+            ),
+        ),
+        Fault::Gain(i, gain) => (
+            FindingKind::WrongGain,
+            None,
+            Some(i),
+            format!(
+                "the torque of `{}` looks wrong by a factor, it should be about {gain} times as large: check its gain and unit",
+                name(i)
+            ),
+        ),
+        Fault::Swapped(i, j) => (
+            FindingKind::SwappedColumns,
+            None,
+            Some(i),
+            format!(
+                "the torques of `{}` and `{}` look swapped: check the columns of the log",
+                name(i),
+                name(j)
+            ),
+        ),
+        Fault::Label(run) => {
+            let log = &runs[run];
+            let (is, label) = if log.payload() {
+                ("without", "with")
+            } else {
+                ("with", "without")
+            };
+            (
+                FindingKind::PayloadLabel,
+                Some(log.name().to_owned()),
+                None,
+                format!(
+                    "the run looks like one {is} the payload, but is labelled as one {label} it"
+                ),
+            )
+        }
+    };
+    Finding {
+        kind,
+        run,
+        actuator: actuator.map(|index| name(index).to_owned()),
+        message: format!("{message}; {so}"),
+    }
+}
+
+/// The columns of the model, the payload's being there in any case.
+struct Columns {
+    columns: ColumnSet,
+    base: BaseParameters,
+    /// Places of the payload's columns among the base parameters.
+    payload: Vec<usize>,
+}
+
+impl Columns {
+    fn new(model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
+        let has_payload = !model.info().payload_parameters.is_empty();
+        let columns = ColumnSet::new(
+            model,
+            has_payload,
+            settings.asymmetric_friction,
+            settings.seed,
+        )?;
+        let payload = if has_payload {
+            PayloadUse::Separate
+        } else {
+            PayloadUse::Absent
+        };
+        let base = base_parameters(model, &columns, payload, settings.seed)?;
+        let loads = columns.indices(true);
+        let places = base.columns.iter().enumerate();
+        let payload = places
+            .filter(|(_, column)| loads.contains(column))
+            .map(|(place, _)| place)
+            .collect();
+        Ok(Self {
+            columns: columns.with_dead_band(model, settings.velocity_dead_band, settings.seed)?,
+            base,
+            payload,
+        })
+    }
+
+    /// Goes through runs.
+    fn doubt(
+        &self,
+        model: &dyn Model,
+        runs: &[Log],
+        settings: &Settings,
+    ) -> Result<Doubt<'_>, Error> {
+        let loaded = !model.info().payload_parameters.is_empty();
+        let factors = |log: &Log| {
+            let log = log.clone().with_payload(loaded);
+            run_factors(model, &log, settings, &self.columns, &self.base)
+        };
+        Ok(Doubt {
+            columns: self,
+            factors: runs.iter().map(factors).collect::<Result<_, _>>()?,
+            labels: runs.iter().map(Log::payload).collect(),
+            actuators: model.info().sizes.actuators,
+        })
+    }
+}
+
+/// The R factors of all runs.
+struct Doubt<'a> {
+    columns: &'a Columns,
+    /// For each run and line, that of [W, J_iᵀ τ_j].
+    factors: Vec<Vec<Factor>>,
+    /// Whether each run is labelled as carrying the payload.
+    labels: Vec<bool>,
+    actuators: usize,
+}
+
+impl Doubt<'_> {
+    /// The part of the inputs that is left unexplained when a fault is taken back, each line being
+    /// divided by its norm.
+    fn error(&self, fault: Option<Fault>) -> f64 {
+        let (n, p) = (self.actuators, self.columns.base.columns.len());
+        // The columns that add up to the inputs.
+        let mut share = DVector::zeros(n * n);
+        for i in 0..n {
+            let (from, gain) = match fault {
+                Some(Fault::Gain(own, gain)) if own == i => (i, gain),
+                Some(Fault::Swapped(a, b)) if a == i => (b, 1.0),
+                Some(Fault::Swapped(a, b)) if b == i => (a, 1.0),
+                _ => (i, 1.0),
+            };
+            share[i * n + from] = gain;
+        }
+        let lines = self.factors.first().map_or(0, Vec::len);
+        let mut stacked: Vec<DMatrix<f64>> = Vec::new();
+        let mut count = 0;
+        for line in 0..lines {
+            let mut of_line = Vec::new();
+            for (run, factors) in self.factors.iter().enumerate() {
+                let r = factors[line].matrix();
+                let mut rows = r.columns(0, p).clone_owned().insert_column(p, 0.0);
+                rows.set_column(p, &(r.columns(p, n * n) * &share));
+                let relabelled = fault == Some(Fault::Label(run));
+                if self.labels[run] == relabelled {
+                    for &column in &self.columns.payload {
+                        rows.column_mut(column).fill(0.0);
+                    }
+                }
+                of_line.push(rows);
+            }
+            let squares: f64 = of_line
+                .iter()
+                .map(|rows| rows.column(p).norm_squared())
+                .sum();
+            if squares > 0.0 {
+                count += 1;
+                let scale = 1.0 / squares.sqrt();
+                stacked.extend(of_line.into_iter().map(|rows| rows * scale));
+            }
+        }
+        let mut all = Factor::new(p);
+        stacked.iter().for_each(|rows| all.push(rows));
+        let selected: Vec<usize> = (0..p).collect();
+        all.smallest_residual(&selected) / f64::from(count.max(1)).sqrt()
+    }
+}
+
+/// The factor of [W, J_iᵀ τ_j] of each line of a run.
+fn run_factors(
+    model: &dyn Model,
+    log: &Log,
+    settings: &Settings,
+    columns: &ColumnSet,
+    base: &BaseParameters,
+) -> Result<Vec<Factor>, Error> {
+    let info = model.info();
+    let (n, r) = (info.sizes.actuators, info.sizes.dof);
+    let mut motions = Motions::new(model, log, settings)?;
+    let decimator = Decimator::new(settings.decimation)?;
+    let (p, width) = (base.columns.len(), base.columns.len() + n * n);
+    let mut streams = (0..r)
+        .map(|_| decimator.stream(width, motions.samples()))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut factors = vec![Factor::new(width - 1); r];
+    while let Some(motion) = motions.next()? {
+        for first in (0..motion.samples).step_by(BLOCK) {
+            let count = BLOCK.min(motion.samples - first);
+            let at = |error: overact::SampleError| {
+                Error::from(motion.outside(first + error.sample, error.error))
+            };
+            let pose = slice(&motion.pose, info.sizes.pose, first, count);
+            let states = [
+                pose,
+                slice(&motion.twist, r, first, count),
+                slice(&motion.acceleration, r, first, count),
+            ];
+            let mut lines = columns
+                .evaluate(
+                    model,
+                    &states,
+                    count,
+                    motion.payload,
+                    (&base.columns, n * n),
+                )
+                .map_err(at)?;
+            let mut jacobians = vec![0.0; count * n * r];
+            model
+                .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+                .map_err(at)?;
+            let torques = slice(&motion.torques, n, first, count);
+            for (line, rows) in lines.iter_mut().enumerate() {
+                for (sample, row) in rows.chunks_exact_mut(width).enumerate() {
+                    let jacobian = slice(&jacobians, n * r, sample, 1);
+                    let torques = slice(torques, n, sample, 1);
+                    let products = (0..n).flat_map(|i| {
+                        torques
+                            .iter()
+                            .map(move |torque| jacobian[i * r + line] * torque)
+                    });
+                    row[p..]
+                        .iter_mut()
+                        .zip(products)
+                        .for_each(|(to, x)| *to = x);
+                }
+            }
+            for ((stream, rows), factor) in streams.iter_mut().zip(&lines).zip(&mut factors) {
+                let mut kept = Vec::new();
+                stream.push(rows, &mut kept);
+                if !kept.is_empty() {
+                    factor.push_rows(&kept);
+                }
+            }
+        }
+    }
+    Ok(factors)
+}

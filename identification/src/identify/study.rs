@@ -1,0 +1,273 @@
+//! Case 2 for every choice of kept actuators on the same data: the study that section 3.1.2 of the
+//! paper leaves open.
+//!
+//! All choices estimate the same base parameters from the same runs, so they can be compared one by
+//! one: how well the kept actuators determine the platform along the way, how large the deviations of
+//! the parameters are by those of case 1, and how well the parameters predict data that were held out,
+//! all on the platform, so that no choice judges itself.
+
+use overact::Model;
+use serde::Serialize;
+
+use super::{
+    Experiment, Prepared, Progress, cross_validate, prepare,
+    result::{CrossValidation, Estimate, Stage},
+    stages::{Outcome, estimate_projection},
+    verdict::Thresholds,
+};
+use crate::{
+    error::Error,
+    essential::HeldOut,
+    regression::{PartitionCondition, Projection},
+    settings::Settings,
+};
+
+/// How well case 1 and every choice of case 2 do.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Study {
+    /// Name of the robot.
+    pub robot: String,
+    /// Case 1.
+    pub platform: Choice,
+    /// Case 2, best first; choices that can't be trusted come last.
+    pub partitions: Vec<Choice>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+}
+
+/// How well one projection does.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Choice {
+    /// Names of the kept actuators; empty for case 1.
+    pub kept_actuators: Vec<String>,
+    /// Whether the choice stays away from its singularities.
+    pub trusted: bool,
+    /// Worst condition of the kept actuators' Jacobian over all runs, with its place.
+    pub partition: Option<PartitionCondition>,
+    /// Its number.
+    pub partition_condition: Option<f64>,
+    /// Geometric mean of σ/σ (case 1) over the base parameters, under correlated residuals: below 1
+    /// the choice determines them better than case 1.
+    pub deviation_ratio: Option<f64>,
+    /// Sum of the relative standard deviations of the essential parameters, percent.
+    pub deviation_sum_percent: Option<f64>,
+    /// Sum of the magnitudes of their errors, percent, where the truth is known.
+    pub error_sum_percent: Option<f64>,
+    /// Part of the platform's inputs that is not predicted on held-out parts of the runs, percent.
+    pub held_out_percent: Option<f64>,
+    /// Mean over the actuators of the torques' relative errors on runs of the cross-validation, percent.
+    pub torque_percent: Option<f64>,
+    /// Relative error on its own equations, percent: it does not rank choices.
+    pub relative_error_percent: Option<f64>,
+    /// Of W, in base parameters.
+    pub condition_number: Option<f64>,
+    /// Number of essential parameters.
+    pub essential_parameters: Option<usize>,
+    /// Places by conditioning, parameter quality and prediction, counted from 1.
+    pub ranks: Option<[usize; 3]>,
+    /// Why there is no estimate.
+    pub error: Option<String>,
+}
+
+/// Compares case 2 for the `choices` of kept actuators with case 1.
+///
+/// # Errors
+/// As [`prepare`], or data from which case 1 determines nothing.
+pub fn study(
+    model: &dyn Model,
+    experiment: &Experiment<'_>,
+    choices: &[Vec<usize>],
+    settings: &Settings,
+    progress: &dyn Fn(Progress<'_>),
+) -> Result<Study, Error> {
+    let mut projections = vec![Projection::Platform];
+    projections.extend(choices.iter().cloned().map(Projection::Actuators));
+    let prepared = prepare(model, experiment.runs, &projections, settings, progress)?;
+    let mut outcomes: Vec<Result<Outcome, Error>> = Vec::new();
+    for (number, projection) in projections.iter().enumerate() {
+        let model = projection.name();
+        progress(Progress::Estimation { model });
+        let outcome = estimate_projection(&prepared, number, settings, experiment.true_values);
+        outcomes.push(outcome);
+    }
+    let reference = outcomes[0].as_ref().map_err(Clone::clone)?.clone();
+    let estimated: Vec<(usize, Estimate)> = outcomes
+        .iter()
+        .enumerate()
+        .filter_map(|(number, outcome)| Some((number, outcome.as_ref().ok()?.essential.clone())))
+        .collect();
+    let held_out = cross_validate(
+        model,
+        &prepared,
+        experiment.validation,
+        &estimated,
+        settings,
+        progress,
+    )?;
+    let mut rows: Vec<Choice> = Vec::new();
+    for (number, outcome) in outcomes.iter().enumerate() {
+        let info = model.info();
+        let names = match &projections[number] {
+            Projection::Platform => Vec::new(),
+            projection => projection.line_names(&info),
+        };
+        rows.push(match outcome {
+            Ok(outcome) => {
+                let torques = held_out.validations.iter();
+                let own: Vec<&CrossValidation> = torques
+                    .zip(held_out.owners.iter())
+                    .filter(|(_, owner)| **owner == number)
+                    .map(|(one, _)| one)
+                    .collect();
+                choice(&prepared, number, names, (outcome, &reference), &own)
+            }
+            Err(error) => Choice {
+                kept_actuators: names,
+                error: Some(error.to_string()),
+                ..Choice::default()
+            },
+        });
+    }
+    let platform = rows.remove(0);
+    rank(&mut rows);
+    let key = |row: &Choice| (!row.trusted, row.deviation_ratio.unwrap_or(f64::INFINITY));
+    rows.sort_by(|a, b| {
+        let (a, b) = (key(a), key(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    Ok(Study {
+        robot: model.info().name.to_owned(),
+        warnings: rows
+            .iter()
+            .filter_map(|row| warning(row, &platform))
+            .collect(),
+        platform,
+        partitions: rows,
+    })
+}
+
+/// What one projection achieves.
+fn choice(
+    prepared: &Prepared,
+    number: usize,
+    kept_actuators: Vec<String>,
+    (outcome, reference): (&Outcome, &Outcome),
+    torques: &[&CrossValidation],
+) -> Choice {
+    let (base, essential) = (&outcome.base, &outcome.essential);
+    let partition = base.partition.clone();
+    let limit = Thresholds::default().partition_condition;
+    let sum = |of: &dyn Fn(&super::ParameterEstimate) -> Option<f64>| -> Option<f64> {
+        essential.parameters.iter().map(of).sum()
+    };
+    let errors: Vec<f64> = torques
+        .iter()
+        .flat_map(|one| &one.torques)
+        .map(|error| error.relative_error_percent)
+        .collect();
+    Choice {
+        kept_actuators,
+        trusted: partition
+            .as_ref()
+            .is_none_or(|one| one.crossings == 0 && one.largest <= limit),
+        partition_condition: partition.as_ref().map(|one| one.largest),
+        partition,
+        deviation_ratio: deviation_ratio(base, &reference.base),
+        deviation_sum_percent: sum(&|one| {
+            Some(100.0 * one.correlated_standard_deviation / one.value.abs())
+        }),
+        error_sum_percent: sum(&|one| one.error_percent.map(f64::abs)),
+        held_out_percent: held_out(prepared, number, base),
+        torque_percent: (!errors.is_empty())
+            .then(|| errors.iter().sum::<f64>() / errors.len() as f64),
+        relative_error_percent: Some(base.relative_error_percent),
+        condition_number: Some(base.condition_number),
+        essential_parameters: Some(essential.parameters.len()),
+        ranks: None,
+        error: None,
+    }
+}
+
+/// Geometric mean of the ratios of deviations of the parameters that both have; none if they share
+/// nothing.
+fn deviation_ratio(own: &Estimate, reference: &Estimate) -> Option<f64> {
+    debug_assert_eq!((own.stage, reference.stage), (Stage::Base, Stage::Base));
+    let logarithms: Vec<f64> = own
+        .parameters
+        .iter()
+        .filter_map(|one| {
+            let mut others = reference.parameters.iter();
+            let other = others.find(|other| other.column == one.column)?;
+            let ratio = one.correlated_standard_deviation / other.correlated_standard_deviation;
+            Some(ratio.ln())
+        })
+        .filter(|logarithm| logarithm.is_finite())
+        .collect();
+    let count = logarithms.len() as f64;
+    (count > 0.0).then(|| (logarithms.iter().sum::<f64>() / count).exp())
+}
+
+/// The error of a projection's parameters on the platform's equations of parts from which they were
+/// not estimated, percent.
+fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> {
+    let selected = base.columns();
+    let folds = |number: usize| {
+        let system = prepared.systems.get(number)?.as_ref().ok()?;
+        let weights = if number == 0 && base.model != "platform" {
+            vec![1.0; system.lines.len()]
+        } else {
+            base.weights.clone()
+        };
+        HeldOut::new(system, &selected, &weights)
+    };
+    let (own, platform) = (folds(number)?, folds(0)?);
+    own.error_percent_in(&platform, &selected)
+}
+
+/// Fills the places of all choices that have an estimate.
+fn rank(rows: &mut [Choice]) {
+    let placed = |of: fn(&Choice) -> Option<f64>, rows: &[Choice]| -> Vec<usize> {
+        let value = |row: &Choice| of(row).unwrap_or(f64::INFINITY);
+        let better = |row: &Choice| {
+            rows.iter()
+                .filter(|other| value(other) < value(row))
+                .count()
+        };
+        rows.iter().map(|row| 1 + better(row)).collect()
+    };
+    let conditions = placed(|row| row.partition_condition, rows);
+    let qualities = placed(|row| row.deviation_ratio, rows);
+    let predictions = placed(|row| row.torque_percent.or(row.held_out_percent), rows);
+    for (index, row) in rows.iter_mut().enumerate() {
+        if row.error.is_none() {
+            row.ranks = Some([conditions[index], qualities[index], predictions[index]]);
+        }
+    }
+}
+
+/// What is said about a choice that can't be trusted.
+fn warning(row: &Choice, platform: &Choice) -> Option<String> {
+    let names = row.kept_actuators.join(", ");
+    if let Some(error) = &row.error {
+        return Some(format!("{names}: {error}"));
+    }
+    let partition = row.partition.as_ref().filter(|_| !row.trusted)?;
+    let mut text = if partition.crossings > 0 {
+        format!(
+            "{names}: the trajectories cross a singularity of this choice {} times, first or worst in {} at t = {:.3} s",
+            partition.crossings, partition.run, partition.time
+        )
+    } else {
+        format!(
+            "{names}: the condition number reaches {} ({}, t = {:.3} s), above {}",
+            crate::report::significant(partition.largest, 3),
+            partition.run,
+            partition.time,
+            Thresholds::default().partition_condition
+        )
+    };
+    if row.relative_error_percent < platform.relative_error_percent {
+        text.push_str("; its relative error, lower than that of case 1, does not speak for it");
+    }
+    Some(text)
+}

@@ -1,0 +1,209 @@
+//! Own results beside published ones as text: parameters (Table 2), torque errors (Table 3) and
+//! tracking errors (Table 4). Without published results, the tables that only they complete are left
+//! out.
+
+use crate::identify::{CrossValidation, Estimate, Identification, Stage};
+
+use super::{
+    published::Published,
+    terminal::{significant, table},
+};
+
+/// The tables; empty where there is nothing to compare.
+#[must_use]
+pub fn beside(identification: &Identification, published: Option<&Published>) -> String {
+    let mut text = String::new();
+    let source = published.map_or_else(String::new, |all| {
+        format!(", beside {}", all.source.trim_end_matches('.'))
+    });
+    if let Some(published) = published {
+        text += &section(
+            &format!("Parameters{source}"),
+            parameters(identification, published),
+        );
+    }
+    let rows = torques(identification, published);
+    text += &section(
+        &format!("Torque errors in percent of the torques{source}"),
+        rows,
+    );
+    let rows = tracking(identification, published);
+    text += &section(
+        &format!("Largest tracking errors in 1e-3 m or rad{source}"),
+        rows,
+    );
+    text
+}
+
+/// A table below its title; nothing without rows.
+fn section(title: &str, (header, rows): (Vec<String>, Vec<Vec<String>>)) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    format!("\n{title}\n{}", table(&header, rows))
+}
+
+/// What a model is called.
+fn case(model: &str) -> &str {
+    match model {
+        "platform" => "case 1",
+        "actuators" => "case 2",
+        _ => "joints",
+    }
+}
+
+/// The last stage of each model.
+fn finals(identification: &Identification) -> Vec<&Estimate> {
+    let all = &identification.estimates;
+    let has_later = |one: &Estimate| {
+        let mut others = all.iter();
+        one.stage == Stage::Base
+            && others.any(|other| other.model == one.model && other.stage == Stage::Essential)
+    };
+    all.iter().filter(|one| !has_later(one)).collect()
+}
+
+/// Table 2: every parameter that a published estimate has, or an own one.
+fn parameters(
+    identification: &Identification,
+    published: &Published,
+) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut header = vec![String::from("parameter")];
+    let estimates = finals(identification);
+    let mut names: Vec<&str> = Vec::new();
+    for estimate in &estimates {
+        let case = case(estimate.model);
+        header.extend([case.to_owned(), String::from("% sigma")]);
+        header.extend([format!("{case}, published"), String::from("% sigma")]);
+        for parameter in &estimate.parameters {
+            if !names.contains(&parameter.name.as_str()) {
+                names.push(&parameter.name);
+            }
+        }
+        let others = published.estimate(estimate.model);
+        for name in others.iter().flat_map(|one| one.parameters.keys()) {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+    }
+    let nothing = || String::from("-");
+    let rows = names.iter().map(|name| {
+        let mut row = vec![(*name).to_owned()];
+        for estimate in &estimates {
+            let own = estimate.parameters.iter().find(|one| one.name == **name);
+            row.push(own.map_or_else(nothing, |one| significant(one.value, 4)));
+            row.push(own.map_or_else(nothing, |one| {
+                significant(
+                    100.0 * one.correlated_standard_deviation / one.value.abs(),
+                    3,
+                )
+            }));
+            let other = published.estimate(estimate.model);
+            let other = other.and_then(|one| one.parameters.get(*name));
+            row.push(other.map_or_else(nothing, |one| significant(one.value, 4)));
+            let deviation = other.and_then(|one| one.deviation_percent);
+            row.push(deviation.map_or_else(nothing, |percent| significant(percent, 3)));
+        }
+        row
+    });
+    (header, rows.collect())
+}
+
+/// The header of a table with a column for each actuator.
+fn actuator_header(first: [&str; 2], actuators: &[String]) -> Vec<String> {
+    let first = first.map(str::to_owned).into_iter();
+    first.chain(actuators.iter().cloned()).collect()
+}
+
+/// Table 3.
+fn torques(
+    identification: &Identification,
+    published: Option<&Published>,
+) -> (Vec<String>, Vec<Vec<String>>) {
+    let stages = finals(identification);
+    let shown = |one: &&CrossValidation| {
+        stages
+            .iter()
+            .any(|last| last.model == one.model && last.stage == one.stage)
+    };
+    let own: Vec<&CrossValidation> = identification
+        .cross_validation
+        .iter()
+        .filter(shown)
+        .collect();
+    let Some(first) = own.first() else {
+        return (Vec::new(), Vec::new());
+    };
+    let actuators: Vec<String> = first.table.iter().map(|one| one.actuator.clone()).collect();
+    let percent = |value: &f64| format!("{value:.1}");
+    let mut rows = Vec::new();
+    let mut add = |run: &str, what: String, errors: &[f64]| {
+        let mut row = vec![run.to_owned(), what];
+        row.extend(errors.iter().map(percent));
+        row.push(percent(
+            &(errors.iter().sum::<f64>() / errors.len().max(1) as f64),
+        ));
+        rows.push(row);
+    };
+    let known = published.filter(|all| all.actuators == actuators);
+    for one in own {
+        let least: Vec<f64> = one
+            .table
+            .iter()
+            .map(|entry| entry.least_norm_percent)
+            .collect();
+        add(&one.run, format!("{}, least norm", case(one.model)), &least);
+        let closure: Option<Vec<f64>> = one
+            .table
+            .iter()
+            .map(|entry| entry.closure_percent)
+            .collect();
+        if let Some(closure) = closure {
+            add(&one.run, format!("{}, eq. (26)", case(one.model)), &closure);
+        }
+        let others = known.iter().flat_map(|all| &all.cross_validation);
+        for other in others.filter(|other| other.run == one.run && other.model == one.model) {
+            let what = format!("{}, eq. (26), published", case(one.model));
+            add(&one.run, what, &other.torques_percent);
+        }
+    }
+    let mut header = actuator_header(["run", "prediction"], &actuators);
+    header.push(String::from("mean"));
+    (header, rows)
+}
+
+/// Table 4.
+fn tracking(
+    identification: &Identification,
+    published: Option<&Published>,
+) -> (Vec<String>, Vec<Vec<String>>) {
+    let Some(first) = identification.tracking.first() else {
+        return (Vec::new(), Vec::new());
+    };
+    let known = published.filter(|all| all.actuators == first.actuators);
+    let mut rows = Vec::new();
+    let mut add = |run: &str, what: String, largest: &[f64]| {
+        let mut row = vec![run.to_owned(), what];
+        row.extend(largest.iter().map(|error| significant(1e3 * error, 3)));
+        rows.push(row);
+    };
+    for one in &identification.tracking {
+        add(&one.run, one.controller.clone(), &one.largest);
+        let others = known.iter().flat_map(|all| &all.tracking);
+        let same =
+            others.filter(|other| other.run == one.run && other.controller == one.controller);
+        for other in same {
+            add(
+                &one.run,
+                format!("{}, published", one.controller),
+                &other.largest,
+            );
+        }
+    }
+    (
+        actuator_header(["run", "controller"], &first.actuators),
+        rows,
+    )
+}

@@ -1,0 +1,340 @@
+//! Data that can't be right are found and named, and good data raise no alarm.
+
+mod common;
+#[path = "common/dualv.rs"]
+mod dualv;
+
+use std::sync::LazyLock;
+
+use dualv::{DualV, experiment, log, records, settings};
+use overact_identification::{Error, Experiment, FindingKind, Identification, Log, identify};
+use overact_simulation::Record;
+
+/// Two unloaded and two loaded runs of five seconds.
+static RECORDS: LazyLock<Vec<Record>> = LazyLock::new(|| {
+    let robot = DualV::new();
+    let mut experiment = experiment(&robot, 1.0, 5);
+    experiment.duration_s = 4.0;
+    records(&robot, &experiment)
+});
+
+/// Identifies from the runs, with `change` made to positions and torques of each by its number.
+fn with(change: impl Fn(usize, &mut Vec<f64>, &mut Vec<f64>)) -> Result<Identification, Error> {
+    let runs = RECORDS.iter().enumerate().map(|(number, record)| {
+        log(record.clone(), |positions, torques| {
+            change(number, positions, torques)
+        })
+    });
+    identified(&runs.collect::<Vec<_>>())
+}
+
+fn identified(runs: &[Log]) -> Result<Identification, Error> {
+    let robot = DualV::new();
+    let experiment = Experiment {
+        runs,
+        validation: &[],
+        true_values: None,
+    };
+    identify(
+        &robot,
+        &experiment,
+        &settings(&robot).trimmed(1000.0),
+        &|_| {},
+    )
+}
+
+/// Kinds, runs and actuators of the findings, which all stand among the warnings, too.
+fn found(result: &Identification) -> Vec<(FindingKind, Option<&str>, Option<&str>)> {
+    for finding in &result.findings {
+        println!(
+            "{:?} {:?} {:?} {}",
+            finding.kind, finding.run, finding.actuator, finding.message
+        );
+        assert!(
+            result
+                .warnings
+                .iter()
+                .any(|warning| warning.contains(&finding.message))
+        );
+    }
+    let findings = result.findings.iter();
+    findings
+        .map(|one| (one.kind, one.run.as_deref(), one.actuator.as_deref()))
+        .collect()
+}
+
+/// The verdict on a subject.
+fn trusted(result: &Identification, subject: &str) -> bool {
+    let mut verdicts = result.verdicts.iter();
+    verdicts
+        .find(|verdict| verdict.subject == subject)
+        .expect("a verdict")
+        .trusted
+}
+
+#[test]
+fn good_data_raise_no_alarm() {
+    let result = with(|_, _, _| {}).expect("an identification");
+    assert_eq!(found(&result), []);
+    assert!(trusted(&result, "case 1") && trusted(&result, "case 2"));
+    // Slow and coarse: a tenth of the sampling frequency, encoders of half a milliradian.
+    let coarse = with(|_, positions, torques| {
+        *positions = positions
+            .iter()
+            .map(|q| (q / 5e-4).round() * 5e-4)
+            .collect();
+        *torques = torques
+            .iter()
+            .map(|tau| (tau / 0.5).round() * 0.5)
+            .collect();
+    });
+    assert_eq!(found(&coarse.expect("an identification")), []);
+}
+
+#[test]
+fn clipped_torques_are_named() {
+    let limit = 25.0;
+    let clip = |torque: &mut f64| *torque = torque.clamp(-limit, limit);
+    let result = with(|run, _, torques| {
+        if run == 2 {
+            torques.iter_mut().skip(1).step_by(4).for_each(clip);
+        }
+    });
+    let result = result.expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::ClippedTorque, Some("loaded 1"), Some("leg2"))]
+    );
+    assert!(!trusted(&result, "case 1") && !trusted(&result, "data"));
+    // The same with the noise of a measurement on top.
+    let result = with(|run, _, torques| {
+        if run == 2 {
+            torques
+                .iter_mut()
+                .skip(1)
+                .step_by(4)
+                .enumerate()
+                .for_each(|(k, torque)| {
+                    *torque = torque.clamp(-limit, limit) + 0.1 * (1.7 * (k * k) as f64).sin();
+                });
+        }
+    });
+    assert_eq!(
+        found(&result.expect("an identification")),
+        [(FindingKind::ClippedTorque, Some("loaded 1"), Some("leg2"))]
+    );
+}
+
+#[test]
+fn stuck_encoders_are_named() {
+    // For half a second.
+    let result = with(|run, positions, _| {
+        if run == 1 {
+            let held = positions[4 * 1000 + 2];
+            positions[4 * 1000..4 * 1500]
+                .iter_mut()
+                .skip(2)
+                .step_by(4)
+                .for_each(|q| *q = held);
+        }
+    });
+    match result {
+        Ok(result) => assert!(found(&result).contains(&(
+            FindingKind::StuckEncoder,
+            Some("unloaded 2"),
+            Some("leg3")
+        ))),
+        Err(error) => assert!(error.to_string().contains("stuck"), "{error}"),
+    }
+    // From start to end, which the loops do not allow.
+    let result = with(|run, positions, _| {
+        if run == 1 {
+            let held = positions[2];
+            positions
+                .iter_mut()
+                .skip(2)
+                .step_by(4)
+                .for_each(|q| *q = held);
+        }
+    });
+    match result {
+        Ok(result) => assert!(found(&result).contains(&(
+            FindingKind::StuckEncoder,
+            Some("unloaded 2"),
+            Some("leg3")
+        ))),
+        Err(error) => assert!(error.to_string().contains("stuck"), "{error}"),
+    }
+}
+
+#[test]
+fn dropped_and_repeated_samples_are_named() {
+    for repeated in [false, true] {
+        let result = with(|run, positions, torques| {
+            if run == 0 {
+                for rows in [positions, torques] {
+                    // Twenty samples are gone; or ten are what the one before was.
+                    if repeated {
+                        let held: Vec<f64> = rows[4 * 2000..4 * 2001].to_vec();
+                        rows[4 * 2000..4 * 2010]
+                            .chunks_exact_mut(4)
+                            .for_each(|row| row.copy_from_slice(&held));
+                    } else {
+                        rows.drain(4 * 2000..4 * 2020);
+                    }
+                }
+            }
+        });
+        let result = result.expect("an identification");
+        assert_eq!(
+            found(&result),
+            [(FindingKind::DroppedSamples, Some("unloaded 1"), None)],
+            "{repeated}"
+        );
+        assert!(result.findings[0].message.contains("t = 2.0"));
+    }
+}
+
+#[test]
+fn a_run_at_standstill_is_named() {
+    let result = with(|run, positions, torques| {
+        if run == 1 {
+            let held = positions[..4].to_vec();
+            for (k, row) in positions.chunks_exact_mut(4).enumerate() {
+                for (i, (q, held)) in row.iter_mut().zip(&held).enumerate() {
+                    // The last digit flickers.
+                    let noise = (7.3 * (k * (i + 1)) as f64).sin();
+                    *q = held + if noise > 0.5 { 1e-5 } else { 0.0 };
+                }
+            }
+            torques.fill(0.01);
+        }
+    });
+    let result = result.expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::Standstill, Some("unloaded 2"), None)]
+    );
+}
+
+#[test]
+fn swapped_columns_are_named() {
+    // Positions: the loops tell.
+    let swapped =
+        with(|_, positions, _| positions.chunks_exact_mut(4).for_each(|row| row.swap(0, 2)));
+    match swapped {
+        Ok(result) => assert!(found(&result).contains(&(
+            FindingKind::SwappedColumns,
+            Some("unloaded 1"),
+            Some("leg1")
+        ))),
+        Err(error) => assert!(
+            error
+                .to_string()
+                .contains("the positions of `leg1` and `leg3` look swapped"),
+            "{error}"
+        ),
+    }
+    // Torques: the model tells.
+    let swapped = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row.swap(1, 2)));
+    let result = swapped.expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::SwappedColumns, None, Some("leg2"))]
+    );
+    assert!(
+        result.findings[0]
+            .message
+            .contains("the torques of `leg2` and `leg3`")
+    );
+}
+
+#[test]
+fn degrees_are_named() {
+    let result = with(|_, positions, _| positions.iter_mut().for_each(|q| *q = q.to_degrees()));
+    match result {
+        Ok(result) => {
+            assert!(found(&result).contains(&(FindingKind::Degrees, Some("unloaded 1"), None)))
+        }
+        Err(error) => assert!(error.to_string().contains("look like degrees"), "{error}"),
+    }
+}
+
+#[test]
+fn a_drive_of_the_wrong_sign_is_named() {
+    let reverse =
+        |values: &mut Vec<f64>| values.iter_mut().skip(3).step_by(4).for_each(|x| *x = -*x);
+    let result = with(|_, _, torques| reverse(torques)).expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::WrongSign, None, Some("leg4"))]
+    );
+    assert!(!trusted(&result, "case 1"));
+    match with(|_, positions, _| reverse(positions)) {
+        Ok(result) => assert!(found(&result).contains(&(
+            FindingKind::WrongSign,
+            Some("unloaded 1"),
+            Some("leg4")
+        ))),
+        Err(error) => assert!(
+            error
+                .to_string()
+                .contains("the position of `leg4` looks reversed"),
+            "{error}"
+        ),
+    }
+    // All drives: nothing but the signs of the parameters tells.
+    let result = with(|_, _, torques| torques.iter_mut().for_each(|tau| *tau = -*tau));
+    let result = result.expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::NegativeParameter, None, None)]
+    );
+}
+
+#[test]
+fn a_drive_of_a_wrong_gain_is_named() {
+    let result = with(|_, _, torques| torques.iter_mut().step_by(4).for_each(|tau| *tau *= 10.0));
+    let result = result.expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::WrongGain, None, Some("leg1"))]
+    );
+    assert!(result.findings[0].message.contains("0.1 times"));
+}
+
+#[test]
+fn a_payload_run_that_is_labelled_unloaded_is_named() {
+    for (number, run, label) in [(3, "loaded 2", false), (0, "unloaded 1", true)] {
+        let mut runs: Vec<Log> = RECORDS
+            .iter()
+            .map(|record| log(record.clone(), |_, _| {}))
+            .collect();
+        runs[number] = runs[number].clone().with_payload(label);
+        let result = identified(&runs).expect("an identification");
+        assert_eq!(
+            found(&result),
+            [(FindingKind::PayloadLabel, Some(run), None)]
+        );
+        let is = if label {
+            "without the payload"
+        } else {
+            "with the payload"
+        };
+        assert!(
+            result.findings[0]
+                .message
+                .contains(&format!("looks like one {is}"))
+        );
+    }
+    // Even if all are said to be unloaded.
+    let runs: Vec<Log> = RECORDS[..3]
+        .iter()
+        .map(|record| log(record.clone(), |_, _| {}).with_payload(false))
+        .collect();
+    let result = identified(&runs).expect("an identification");
+    assert_eq!(
+        found(&result),
+        [(FindingKind::PayloadLabel, Some("loaded 1"), None)]
+    );
+}
