@@ -81,8 +81,13 @@ fn the_dualv_has_an_experiment() {
     let experiment = robot.experiment.unwrap();
     assert_eq!(experiment.sampling, 5000.0);
     assert_eq!(experiment.torque_limit, Some(vec![127.0; 4]));
-    let payloads: Vec<_> = experiment.runs.iter().map(|run| run.payload).collect();
-    assert_eq!(payloads, [false, false, true, true]);
+    let payloads = |validation: bool| -> Vec<bool> {
+        let runs = experiment.runs.iter();
+        let runs = runs.filter(|run| run.validation == validation);
+        runs.map(|run| run.payload).collect()
+    };
+    assert_eq!(payloads(false), [false, false, true, true]);
+    assert_eq!(payloads(true), [false, true]);
     let mass = experiment
         .parameters
         .iter()
