@@ -1,10 +1,10 @@
 //! A robot's drawing: bodies, joints, frames and platform at the home configuration, as one SVG text.
 //!
-//! - [`scene`](self::scene): a mechanism becomes lines, joints and plates in space; a robot whose axes
+//! - `scene`: a mechanism becomes lines, joints and plates in space; a robot whose axes
 //!   all meet in one point has no lengths and is drawn on a sphere around it;
-//! - [`view`](self::view): planar robots are seen along the normal of their plane, others from the side
+//! - `view`: planar robots are seen along the normal of their plane, others from the side
 //!   that separates their joints best;
-//! - [`paint`](self::paint), [`joints`](self::joints), [`labels`](self::labels): the sheet, from far to near.
+//! - `paint`, `joints`, `labels`: the sheet, from far to near.
 //!
 //! The text needs nothing from elsewhere: no fonts, no links, no scripts. Its colours follow the reader's
 //! choice of light or dark. All class names begin with `ov-`, so that the text may stand within a page.
