@@ -1,9 +1,9 @@
 //! Inverse kinematics by rule: what a leg's closure says of its joints, without an angle.
 //!
-//! Two rules are tried, both on the leg's geometry and never on a robot's name. [`planar`] knows the
-//! two links in a plane. [`peeling`] takes a leg apart one joint at a time after Paul: the closure
+//! Two rules are tried, both on the leg's geometry and never on a robot's name. `planar` knows the
+//! two links in a plane. `peeling` takes a leg apart one joint at a time after Paul: the closure
 //! is written in the frame of every joint on the way, and of all the scalar equations that this gives
-//! ([`equations`]) one is looked for that holds a single unknown and is linear in its cosine and
+//! (`equations`) one is looked for that holds a single unknown and is linear in its cosine and
 //! sine or quadratic in its slide. What is found makes others soluble.
 //!
 //! The closed forms hold square roots, whose signs are the working mode of the home configuration.
