@@ -1,9 +1,9 @@
-//! What an identification is told as: tables for a [`terminal`], a page for a browser ([`page`]),
-//! and a flat table of all numbers ([`numbers`]).
+//! What an identification is told as: tables for a [`terminal`], a page for a browser ([`page()`]),
+//! and a flat table of all numbers ([`numbers()`]).
 //!
 //! The page is one file that needs nothing from elsewhere: plots are SVG within it, its style follows
 //! the reader's choice of light or dark, and there is no script. Its sections are in files of their
-//! own in [`page`]; the plots' axes and lines are in the module `plot`.
+//! own in [`page()`]; the plots' axes and lines are in the module `plot`.
 
 pub mod beside;
 pub mod numbers;

@@ -2,8 +2,8 @@
 //! what the data could not tell.
 //!
 //! The verdict stands first, the parameters follow, and every plot says below what to look for in it.
-//! Each section is a file: [`verdict`], [`parameters`], [`limits`], [`elimination`], [`conditioning`],
-//! [`inputs`], [`validation`], [`tracking`], [`trajectories`], [`residuals`], [`data`]. Sections that
+//! Each section is a file: `verdict`, `parameters`, `limits`, `elimination`, `conditioning`,
+//! `inputs`, `validation`, `tracking`, `trajectories`, `residuals`, `data`. Sections that
 //! have nothing to show are left out.
 
 mod conditioning;
