@@ -2,12 +2,10 @@
 
 use crate::cas::Arena;
 use crate::derivation::{
-    Columns, Family, From, GuardKind, JointsBy, Selection, Underivable, derive, station_count,
+    Columns, Family, From, GuardKind, JointsBy, Selection, Underivable, derive,
 };
 use crate::lowering::{Array, Condition, Effort, GuardedExpr, Program, lower};
 use crate::mechanism::Mechanism;
-use crate::parallel;
-use std::collections::BTreeSet;
 
 /// How the joints of a robot follow from its pose: by rule, if one fits every leg.
 ///
@@ -79,51 +77,6 @@ fn effort(asked: Effort, family: Family) -> Effort {
         Family::IdmRedPlatform(_) => asked,
         _ => asked.min(Effort::Quick),
     }
-}
-
-/// The axes in which the legs' closures are written: for each shape of legs the station in which the
-/// regressor needs the fewest operations, the base where none is better.
-///
-/// # Errors
-/// See [`Underivable`].
-pub fn cheapest_stations(
-    mechanism: &Mechanism,
-    selection: &Selection,
-) -> Result<Vec<usize>, Underivable> {
-    let family = Family::IdmRedPlatform(Columns::Standard);
-    let operations = |stations: &[usize]| {
-        let trial = Selection {
-            stations: stations.to_vec(),
-            ..selection.clone()
-        };
-        program(mechanism, &trial, family, From::Joints, JointsBy::Rule)
-            .map(|p| p.cost().operations())
-    };
-    let mut chosen = vec![0; mechanism.legs.len()];
-    if mechanism.platform.is_none() {
-        return Ok(chosen);
-    }
-    let mut best = operations(&chosen)?;
-    let shapes: BTreeSet<usize> = mechanism.legs.iter().map(|leg| leg.shape).collect();
-    for shape in shapes {
-        let of_shape = |l: &usize| mechanism.legs[*l].shape == shape;
-        let legs: Vec<usize> = (0..mechanism.legs.len()).filter(of_shape).collect();
-        let count = legs.iter().map(|&l| station_count(mechanism, l)).min();
-        let trials = (1..count.unwrap_or(0)).map(|station| {
-            let mut trial = chosen.clone();
-            legs.iter().for_each(|&l| trial[l] = station);
-            trial
-        });
-        let trials: Vec<Vec<usize>> = trials.collect();
-        let costs = parallel::map(&trials, |trial| operations(trial));
-        for (trial, cost) in trials.into_iter().zip(costs) {
-            // A station in which a leg cannot be written is none to choose.
-            if let Some(cost) = cost.ok().filter(|cost| *cost < best) {
-                (chosen, best) = (trial, cost);
-            }
-        }
-    }
-    Ok(chosen)
 }
 
 /// The function with or without combined columns, whichever needs fewer operations.

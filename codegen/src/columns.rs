@@ -6,14 +6,15 @@ use crate::base::{BaseParameter, select, symmetric_order};
 use crate::cas::Arena;
 use crate::combine::exact_combinations;
 use crate::derivation::{
-    BodyParameter, Columns, Combination, Family, From, JointsBy, Robot, Selection, Underivable,
-    derive,
+    BodyParameter, Columns, Combination, Family, Formulation, From, JointsBy, Robot, Selection,
+    Underivable, derive,
 };
 use crate::evaluation::{Rows, Workspace};
-use crate::lowering::Program;
-use crate::mechanism::Mechanism;
+use crate::lowering::{Program, Source};
+use crate::mechanism::{BaseColumns, Mechanism};
 use crate::states::{State, random_states};
 use nalgebra::DMatrix;
+use std::collections::BTreeSet;
 
 /// The parameters whose columns are not identically zero.
 ///
@@ -25,7 +26,7 @@ pub fn present(
     family: Family,
 ) -> Result<Vec<BodyParameter>, Underivable> {
     let arena = Arena::new();
-    let robot = Robot::new(&arena, mechanism, From::Joints, &[])?;
+    let robot = Robot::new(&arena, mechanism, From::Joints, &Formulation::default())?;
     let payload = family == Family::IdmRedPayload;
     let all = if payload {
         robot.payload_parameters()
@@ -68,10 +69,59 @@ pub fn base_parameters(
     let count = 3 * columns / mechanism.dof().max(1) + 10;
     let states = random_states(mechanism, count, 1);
     let matrix = sample(&program, &states, mechanism.dof(), columns);
-    let order = symmetric_order(mechanism, &selection.standard);
-    let mut base = select(&matrix, &order, &selection.standard);
+    let symmetric = symmetric_order(mechanism, &selection.standard);
+    let mut base = select(&matrix, &symmetric, &selection.standard);
+    if mechanism.base_columns == BaseColumns::Cheapest {
+        let shares = shares(&program, columns);
+        let mut order = symmetric;
+        order.sort_by(|a, b| shares[*a].total_cmp(&shares[*b]));
+        let other = select(&matrix, &order, &selection.standard);
+        if operations(mechanism, selection, &other)? < operations(mechanism, selection, &base)? {
+            base = other;
+        }
+    }
     let exact = exact_combinations(mechanism, selection, &mut base)?;
     Ok((base, exact))
+}
+
+/// Operations of the model with these columns.
+fn operations(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    base: &[BaseParameter],
+) -> Result<usize, Underivable> {
+    let trial = Selection {
+        base: base.iter().map(|b| b.parameter).collect(),
+        ..selection.clone()
+    };
+    let family = Family::IdmRedPlatform(Columns::Base);
+    program(mechanism, &trial, family, From::Joints, JointsBy::Rule)
+        .map(|program| program.cost().operations())
+}
+
+/// What each column costs: the operations of a program, divided among the columns that need them. If
+/// no operation were shared, the independent columns that come first in this order would be the
+/// cheapest set (the greedy algorithm on a matroid); as they are, it is a good guess.
+fn shares(program: &Program, columns: usize) -> Vec<f64> {
+    let mut needed: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); program.steps.len()];
+    for (at, entry) in program.entries.iter().enumerate() {
+        if let Source::Step(step) = entry.source {
+            needed[step].insert(at % columns);
+        }
+    }
+    let mut shares = vec![0.0; columns];
+    for (at, step) in program.steps.iter().enumerate().rev() {
+        let by = std::mem::take(&mut needed[at]);
+        for operand in step.operation.operands() {
+            if let Source::Step(step) = operand {
+                needed[step].extend(&by);
+            }
+        }
+        if step.operation.is_counted() {
+            by.iter().for_each(|c| shares[*c] += 1.0 / by.len() as f64);
+        }
+    }
+    shares
 }
 
 /// A model's rows over states, stacked.

@@ -1,11 +1,12 @@
 //! The stages of the generator, in order.
 
-use crate::assemble::{cheapest, cheapest_stations, joints_by};
+use crate::assemble::{cheapest, joints_by};
 use crate::columns::{base_parameters, present};
 use crate::combine::cheaper_columns;
 use crate::derivation::{Columns, Family, From, Selection, Underivable};
 use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
+use crate::formulation::cheapest_formulation;
 use crate::lowering::Effort;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
@@ -93,7 +94,7 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
         Family::IdmRedPlatform(Columns::Standard),
     )?;
     selection.payload = present(&mechanism, &selection, Family::IdmRedPayload)?;
-    selection.stations = cheapest_stations(&mechanism, &selection)?;
+    selection.formulation = cheapest_formulation(&mechanism, &selection)?;
     let (base, exact) = base_parameters(&mechanism, &selection)?;
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;

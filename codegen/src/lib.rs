@@ -32,6 +32,7 @@ pub mod description;
 pub mod diagnostic;
 pub mod emission;
 pub mod evaluation;
+pub mod formulation;
 pub mod lowering;
 pub mod mechanism;
 pub mod model;

@@ -9,10 +9,20 @@
 use super::configuration::Configuration;
 use super::leg::{joint_turn, link_vector};
 use super::platform::{centripetal, constant_rotation};
-use super::rates::{Rates, parallel};
+use super::rates::parallel;
+use super::robot::LegState;
 use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Ratio, Vector3};
 use crate::description::StandardParameter;
 use crate::mechanism::{JointKind, Leg};
+
+/// Axes that meet in a point, seen from a body.
+#[derive(Debug, Clone)]
+pub struct Lever<'a> {
+    /// From the point to the frame's origin.
+    pub vector: Vector3<'a>,
+    /// The quasi-velocities of these axes.
+    pub axes: Vec<usize>,
+}
 
 /// The motion of a body in its own frame.
 #[derive(Debug, Clone)]
@@ -27,6 +37,8 @@ pub struct BodyMotion<'a> {
     pub u_matrix: Matrix3<'a>,
     /// ∂V/∂u_i and ∂Ω/∂u_i: partial velocities of the frame.
     pub partials: Vec<[Vector3<'a>; 2]>,
+    /// Axes on which a wrench acts by its moment about a point.
+    pub levers: Vec<Lever<'a>>,
 }
 
 impl<'a> BodyMotion<'a> {
@@ -37,6 +49,7 @@ impl<'a> BodyMotion<'a> {
         alpha: Vector3<'a>,
         acceleration: Vector3<'a>,
         partials: Vec<[Vector3<'a>; 2]>,
+        levers: Vec<Lever<'a>>,
     ) -> Self {
         let u_matrix = centripetal(omega, alpha);
         Self {
@@ -45,14 +58,27 @@ impl<'a> BodyMotion<'a> {
             acceleration,
             u_matrix,
             partials,
+            levers,
         }
     }
 
     /// The generalised forces on all u of a wrench (force, moment) in the body's frame.
     #[must_use]
     pub fn project(&self, [force, moment]: [Vector3<'a>; 2]) -> Vec<Expr<'a>> {
-        let one = |[v, o]: &[Vector3<'a>; 2]| v.dot(force) + o.dot(moment);
-        self.partials.iter().map(one).collect()
+        // One form only may be written: the graph takes a second one for the first.
+        let moments: Vec<Vector3<'a>> = self
+            .levers
+            .iter()
+            .map(|l| moment + l.vector.cross(force))
+            .collect();
+        let on = |(u, [v, o]): (usize, &[Vector3<'a>; 2])| {
+            let lever = self.levers.iter().position(|l| l.axes.contains(&u));
+            match lever {
+                Some(at) => o.dot(moments[at]),
+                None => v.dot(force) + o.dot(moment),
+            }
+        };
+        self.partials.iter().enumerate().map(on).collect()
     }
 
     /// The wrench at the frame's origin, per unit of an inertial parameter.
@@ -113,15 +139,15 @@ pub(super) fn second_moment<'a>(
 pub fn leg_bodies<'a>(
     arena: &'a Arena,
     leg: &Leg,
-    first_joint: usize,
+    state: &LegState<'a>,
     configuration: &Configuration<'a>,
-    rates: &Rates,
     (u, u_dot): (&[Expr<'a>], &[Expr<'a>]),
     gravity: Vector3<'a>,
 ) -> Option<Vec<BodyMotion<'a>>> {
     let zero = Vector3::zero(arena);
     let base_gravity = constant_rotation(arena, leg.base.rotation).transposed() * gravity;
-    let still = BodyMotion::new(zero, zero, -base_gravity, vec![[zero; 2]; u.len()]);
+    let still = BodyMotion::new(zero, zero, -base_gravity, vec![[zero; 2]; u.len()], vec![]);
+    let (first_joint, rates) = (state.first_joint, &state.rates);
     let mut bodies: Vec<BodyMotion<'a>> = Vec::new();
     for (index, joint) in leg.joints.iter().enumerate() {
         let from = joint.antecedent.map_or(&still, |a| &bodies[a]);
@@ -156,7 +182,26 @@ pub fn leg_bodies<'a>(
             partial
         });
         let partials = partials.collect();
-        bodies.push(BodyMotion::new(omega, alpha, acceleration, partials));
+        let carried = |l: &Lever<'a>| Lever {
+            vector: turn.apply(l.vector + link),
+            axes: l.axes.clone(),
+        };
+        let mut levers: Vec<Lever<'a>> = from.levers.iter().map(carried).collect();
+        let starts = state
+            .centres
+            .iter()
+            .filter(|c| c.joints.first() == Some(&index));
+        levers.extend(starts.map(|centre| Lever {
+            vector: axis.scaled(arena.number(-centre.offset)),
+            axes: rates.own(&centre.joints),
+        }));
+        bodies.push(BodyMotion::new(
+            omega,
+            alpha,
+            acceleration,
+            partials,
+            levers,
+        ));
     }
     Some(bodies)
 }

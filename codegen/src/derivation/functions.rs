@@ -6,7 +6,7 @@ use super::family::{Columns, Family};
 use super::forward_kinematics::closed_form;
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::regressor::{BodyParameter, Projection};
-use super::robot::{Guard, GuardKind, Robot, Underivable};
+use super::robot::{Formulation, Guard, GuardKind, Robot, Underivable};
 use crate::cas::{Arena, Expr, Number};
 use crate::lowering::Effort;
 use crate::mechanism::{JointKind, Mechanism};
@@ -35,10 +35,8 @@ pub struct Selection {
     pub payload: Vec<BodyParameter>,
     /// Kept actuators of case 2.
     pub kept_actuators: Vec<usize>,
-    /// The axes in which the closure of each leg is written, see
-    /// [`Orientation::stations`](super::orientation::Orientation::stations); 0, and none, are the
-    /// base's.
-    pub stations: Vec<usize>,
+    /// How the robot is written.
+    pub formulation: Formulation,
     /// Dependent columns that are had more cheaply from others than from their definition.
     pub combined: Vec<Combination>,
     /// How hard cheaper ways to write a function are searched.
@@ -82,7 +80,7 @@ pub fn derive<'a>(
         (From::Pose | From::Actuators, JointsBy::Rule) => From::Pose,
         _ => From::Joints,
     };
-    let robot = Robot::new(arena, mechanism, configuration, &selection.stations)?;
+    let robot = Robot::new(arena, mechanism, configuration, &selection.formulation)?;
     let mut sheet = Sheet {
         inputs: robot.configuration_inputs(configuration),
         robot,

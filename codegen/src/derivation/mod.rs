@@ -3,7 +3,7 @@
 //! [`leg`] opens the robot at its platform and closes it again, eqs. (9) to (13): quasi-velocities
 //! ([`rates`]), frames in the axes that suit the leg ([`orientation`]), and the wrenches that feel one joint alone ([`elimination`], [`bias`]). [`body`]
 //! runs the recursion of Newton and Euler in the bodies' own frames, [`carried`] has those that move with the
-//! platform. [`regressor`] projects what each
+//! platform, [`centres`] finds axes that meet in a point. [`regressor`] projects what each
 //! standard parameter produces on the platform, eq. (30), or on kept actuators, eq. (36). [`robot`] holds
 //! one derivation together. [`inverse_kinematics`] finds joints from a pose and [`forward_kinematics`] a
 //! pose from actuators, in closed form where there is one, and [`functions`] names what comes out of it.
@@ -11,6 +11,7 @@
 pub mod bias;
 pub mod body;
 pub mod carried;
+pub mod centres;
 #[cfg(test)]
 mod closed_forms;
 pub mod configuration;
@@ -33,4 +34,4 @@ pub use family::{Columns, Family};
 pub use functions::{Combination, Derived, JointsBy, Selection, derive};
 pub use orientation::station_count;
 pub use regressor::BodyParameter;
-pub use robot::{Guard, GuardKind, Robot, Underivable};
+pub use robot::{Formulation, Guard, GuardKind, Robot, Underivable};

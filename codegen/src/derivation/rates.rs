@@ -69,6 +69,29 @@ pub struct Rates {
 }
 
 impl Rates {
+    /// Whether a joint has a rate of its own that turns or moves what is behind it and nothing else
+    /// contributes to: no parallel run, no dependent joint.
+    #[must_use]
+    pub fn is_alone(&self, joint: usize) -> bool {
+        let Some(&own) = self.own(&[joint]).first() else {
+            return false;
+        };
+        let others = self.joint.iter().enumerate().filter(|(j, _)| *j != joint);
+        others
+            .clone()
+            .all(|(_, form)| form.coefficient(own).is_zero())
+    }
+
+    /// The quasi-velocities of joints whose rate is one of them.
+    #[must_use]
+    pub fn own(&self, joints: &[usize]) -> Vec<usize> {
+        let own = |j: &usize| match self.joint[*j].0.as_slice() {
+            [(index, factor)] if *factor == Number::ONE => Some(*index),
+            _ => None,
+        };
+        joints.iter().filter_map(own).collect()
+    }
+
     /// The forms of a leg. With `absolute` false every u is a joint rate.
     #[must_use]
     pub fn new(leg: &Leg, absolute: bool) -> Self {

@@ -4,6 +4,7 @@
 use super::bias::end_bias;
 use super::body::{BodyMotion, leg_bodies};
 use super::carried::{CarriedBody, Mount};
+use super::centres::{Centre, centres};
 use super::configuration::{Configuration, From};
 use super::elimination::Rows;
 use super::inverse_kinematics::{Task, solve_leg};
@@ -50,6 +51,8 @@ pub struct LegState<'a> {
     pub frames: LegFrames<'a>,
     /// Joint rates as forms of the quasi-velocities.
     pub rates: Rates,
+    /// Axes that share the moment about the point in which they meet.
+    pub centres: Vec<Centre>,
     /// The closure; `None` for a tree.
     pub closure: Option<LegClosure<'a>>,
     /// ∂u/∂v, r numbers per u.
@@ -90,6 +93,18 @@ pub enum Underivable {
     SingularPartition,
 }
 
+/// In which of several equal forms a robot is written; which needs the fewest operations depends on the
+/// robot.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Formulation {
+    /// The axes in which the closure of each leg is written, see
+    /// [`Orientation::stations`](super::orientation::Orientation::stations); 0, and none, are the
+    /// base's.
+    pub stations: Vec<usize>,
+    /// Whether axes that meet in a point share the moment about it, see [`centres`](super::centres).
+    pub meeting: bool,
+}
+
 /// The derivation of a robot.
 #[derive(Debug)]
 pub struct Robot<'a> {
@@ -110,9 +125,7 @@ pub struct Robot<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// Derives configuration and closures. `stations` are the axes in which the legs' closures are
-    /// written ([`Orientation::stations`](super::orientation::Orientation::stations)); legs
-    /// without one are written in the base's.
+    /// Derives configuration and closures.
     ///
     /// # Errors
     /// A leg whose joints do not follow from the pose by rule, or a structurally singular leg.
@@ -120,7 +133,7 @@ impl<'a> Robot<'a> {
         arena: &'a Arena,
         mechanism: &'a Mechanism,
         from: From,
-        stations: &[usize],
+        formulation: &Formulation,
     ) -> Result<Self, Underivable> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
         // The configuration of a tree is its joints, whatever it is called.
@@ -137,14 +150,15 @@ impl<'a> Robot<'a> {
             guards: Vec::new(),
         };
         for leg in 0..mechanism.legs.len() {
-            robot.derive_leg(leg, stations.get(leg).copied().unwrap_or_default())?;
+            robot.derive_leg(leg, formulation)?;
         }
         Ok(robot)
     }
 
-    fn derive_leg(&mut self, index: usize, station: usize) -> Result<(), Underivable> {
+    fn derive_leg(&mut self, index: usize, formulation: &Formulation) -> Result<(), Underivable> {
         let (arena, leg) = (self.arena, &self.mechanism.legs[index]);
         arena.enter(&leg.name);
+        let station = formulation.stations.get(index).copied().unwrap_or_default();
         let first_joint = self.mechanism.leg_range(index).start;
         let name = || leg.name.clone();
         if let (Some(platform), From::Pose | From::Actuators) =
@@ -164,6 +178,10 @@ impl<'a> Robot<'a> {
         let frames = LegFrames::new(arena, leg, first_joint, &self.configuration, station)
             .ok_or_else(|| Underivable::InverseKinematics { leg: name() })?;
         let rates = Rates::new(leg, self.platform.is_some());
+        let centres = match formulation.meeting {
+            true => centres(leg, &rates),
+            false => Vec::new(),
+        };
         let (closure, rows) = match &self.platform {
             None => (
                 None,
@@ -187,6 +205,7 @@ impl<'a> Robot<'a> {
             first_joint,
             frames,
             rates,
+            centres,
             closure,
             rows,
         });
@@ -277,9 +296,8 @@ impl<'a> Robot<'a> {
             let bodies = leg_bodies(
                 self.arena,
                 leg,
-                state.first_joint,
+                state,
                 &self.configuration,
-                &state.rates,
                 (&u, &u_dot),
                 gravity,
             )?;

@@ -33,7 +33,8 @@ mod value;
 
 pub use experiment::{Body, Experiment, Run, Term, TrueParameter};
 pub use model::{
-    Description, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned,
+    BaseColumns, Description, End, Joint, JointKind, Leg, Motion, Placement, Platform,
+    PlatformHome, Spanned,
 };
 pub use parameter::StandardParameter;
 pub use settings::{Data, Factor, Friction, Identification, Normalisation};

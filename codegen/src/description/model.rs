@@ -33,6 +33,8 @@ pub struct Description {
     pub source: String,
     /// How hard the generator searches for fewer operations; `None` leaves it to whoever generates.
     pub effort: Option<Effort>,
+    /// Which columns stand for the base parameters; `None` leaves it to the kind of robot.
+    pub base_columns: Option<BaseColumns>,
     /// Acceleration of gravity in the base frame, m/s².
     pub gravity: [Number; 3],
     /// The platform; `None` for a serial or tree robot.
@@ -45,6 +47,22 @@ pub struct Description {
     pub data: Option<super::Data>,
     /// Settings of the identification.
     pub identification: super::Identification,
+}
+
+/// Which independent columns stand for the base parameters, among choices of equal rank.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BaseColumns {
+    /// The platform's first, then each parameter of all legs together, eq. (43): the same ones in legs
+    /// that are alike.
+    Symmetric,
+    /// Those that take the fewest operations.
+    Cheapest,
+}
+
+impl BaseColumns {
+    /// All, with their names in descriptions.
+    pub const ALL: [(&'static str, Self); 2] =
+        [("symmetric", Self::Symmetric), ("cheapest", Self::Cheapest)];
 }
 
 /// A motion that a platform can have. Axes are 0, 1, 2 for x, y, z of the base frame.

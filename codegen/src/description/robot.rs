@@ -2,7 +2,7 @@
 
 use super::dimension::Dimension;
 use super::inventory::Inventory;
-use super::model::{Description, Leg, Platform, Spanned, actuators, type_name};
+use super::model::{BaseColumns, Description, Leg, Platform, Spanned, actuators, type_name};
 use super::reader::{Context, Item, Table};
 use super::scope::Scope;
 use super::shape::Shape;
@@ -74,6 +74,9 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let effort = table
         .get("effort")
         .and_then(|item| item.choice(&Effort::ALL.map(|e| (e.name(), e))));
+    let base_columns = table
+        .get("base_columns")
+        .and_then(|item| item.choice(&BaseColumns::ALL));
     let constants = table
         .get("constants")
         .and_then(|item| item.table("the table `[constants]`"));
@@ -112,6 +115,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     Some(Description {
         name: name?,
         effort: effort.map(|effort| effort.value),
+        base_columns: base_columns.map(|columns| columns.value),
         summary,
         source,
         gravity: gravity.unwrap_or_else(standard_gravity),

@@ -39,6 +39,15 @@ pub enum Operation {
 }
 
 impl Operation {
+    /// Whether the operation counts as one.
+    #[must_use]
+    pub const fn is_counted(&self) -> bool {
+        matches!(
+            self,
+            Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Div(..)
+        )
+    }
+
     /// The operands.
     #[must_use]
     pub fn operands(&self) -> Vec<Source> {

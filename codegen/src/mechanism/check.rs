@@ -2,7 +2,7 @@
 
 use super::actuation::{rates_per_velocity, shared_velocities};
 use super::home::{Home, HomeError};
-use super::{Joint, Leg, Mechanism, Platform};
+use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
 use crate::derivation::Underivable;
 use crate::description::Description;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -62,6 +62,16 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
 }
 
 /// The mechanism as the description says it, with an empty home configuration.
+/// Legs that are alike shall have the same parameters; a robot without legs side by side has nothing to
+/// be symmetric about.
+fn base_columns(description: &Description) -> BaseColumns {
+    let by_kind = match description.platform {
+        Some(_) => BaseColumns::Symmetric,
+        None => BaseColumns::Cheapest,
+    };
+    description.base_columns.unwrap_or(by_kind)
+}
+
 fn plain(description: &Description) -> Mechanism {
     let joint = |j: &crate::description::Joint| Joint {
         name: j.name.value.clone(),
@@ -98,6 +108,7 @@ fn plain(description: &Description) -> Mechanism {
         legs: on_axis(description, description.legs.iter().map(leg).collect()),
         home: Home::default(),
         // Chosen when the home configuration is known, if the description leaves it open.
+        base_columns: base_columns(description),
         kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
     }
 }

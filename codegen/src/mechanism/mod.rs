@@ -17,7 +17,7 @@ pub use home::Home;
 pub use motion::TwistCoordinate;
 
 use crate::cas::{Angle, Number, Ratio};
-pub use crate::description::{End, JointKind, Motion, Placement, StandardParameter};
+pub use crate::description::{BaseColumns, End, JointKind, Motion, Placement, StandardParameter};
 
 /// A joint and the body behind it.
 #[derive(Debug, Clone)]
@@ -113,6 +113,8 @@ pub struct Mechanism {
     pub home: Home,
     /// Kept actuators of case 2, as indices among the actuators.
     pub kept_actuators: Vec<usize>,
+    /// Which columns stand for the base parameters.
+    pub base_columns: BaseColumns,
 }
 
 /// An independent joint of the robot.
