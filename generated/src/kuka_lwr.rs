@@ -390,7 +390,7 @@ impl KukaLwr {
     /// Output: 7 x 87.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1121 operations (487 additions, 634 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 915 intermediates.
+    /// 1083 operations (467 additions, 616 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 877 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 7],
@@ -401,425 +401,410 @@ impl KukaLwr {
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
         ]);
-        let t3 = s2_arm * joint_velocities[0];
+        let t3 = c2_arm * joint_velocities[0];
         let t4 = joint_velocities[1] * t3;
-        let t5 = c2_arm * joint_accelerations[0];
-        let t6 = t5 - t4;
-        let t7 = t4 - t6;
-        let t8 = c2_arm * t7;
-        let t9 = joint_accelerations[0] + t8;
-        let t10 = c2_arm * joint_velocities[0];
-        let t11 = t3 * t10;
-        let t12 = joint_velocities[1] * t10;
-        let t13 = s2_arm * joint_accelerations[0];
-        let t14 = t13 + t12;
-        let t15 = t12 + t14;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t6 = t5 + t4;
+        let t7 = t4 + t6;
+        let t8 = s2_arm * t7;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t14 = t13 - t12;
+        let t18 = t9 * t9;
         let t19 = t3 * t3;
-        let t20 = t10 * t10;
-        let t24 = joint_velocities[1] * joint_velocities[1];
-        let t30 = t11 - joint_accelerations[1];
+        let t23 = joint_velocities[1] * joint_velocities[1];
+        let t30 = t10 - joint_accelerations[1];
         let t33 = 9.81 * c2_arm;
         let t34 = 9.81 * s2_arm;
         let t38 = s2_arm * c3_arm;
-        let t41 = s3_arm * t3 + c3_arm * joint_velocities[1];
-        let t42 = t10 + joint_velocities[2];
-        let t43 = t41 * t42;
-        let t44 = t38 * t43;
-        let t45 = s2_arm * s3_arm;
-        let t51 = c3_arm * t3 - s3_arm * joint_velocities[1];
-        let t53 = s3_arm * t14 + c3_arm * joint_accelerations[1]
+        let t44 = s3_arm * t9 + c3_arm * joint_velocities[1];
+        let t46 = c3_arm * t6 - s3_arm * joint_accelerations[1]
+            - joint_velocities[2] * t44;
+        let t48 = s2_arm * s3_arm;
+        let t51 = c3_arm * t9 - s3_arm * joint_velocities[1];
+        let t52 = t3 + joint_velocities[2];
+        let t53 = t51 * t52;
+        let t54 = t48 * t53;
+        let t56 = t51 * t44;
+        let t58 = t38 * t46 - t54 + c2_arm * t56;
+        let t61 = s3_arm * t46 + c3_arm * t53;
+        let t62 = t51 * t51;
+        let t63 = t44 * t44;
+        let t64 = t62 - t63;
+        let t66 = t61 - t30;
+        let t74 = s3_arm * t6 + c3_arm * joint_accelerations[1]
             + joint_velocities[2] * t51;
-        let t56 = t51 * t41;
-        let t58 = t44 + t45 * t53 - c2_arm * t56;
-        let t59 = t9 - t58;
-        let t60 = t3 * t42;
-        let t61 = t51 * t42;
-        let t62 = t61 + t53;
-        let t64 = c3_arm * t62 - t60;
-        let t65 = t30 + t64;
-        let t66 = t51 * t51;
-        let t67 = t41 * t41;
-        let t68 = t66 - t67;
-        let t78 = c3_arm * t14 - s3_arm * joint_accelerations[1]
-            - joint_velocities[2] * t41;
-        let t82 = t6 + joint_accelerations[2];
-        let t83 = t82 - t56;
-        let t85 = t42 * t42;
-        let t86 = t85 - t66;
-        let t89 = t43 + t78;
-        let t91 = t38 * t83 - t45 * t86 + c2_arm * t89;
-        let t92 = s3_arm * t83;
-        let t95 = t67 - t85;
-        let t97 = t56 + t82;
-        let t100 = t61 - t53;
-        let t102 = t38 * t95 - t45 * t97 + c2_arm * t100;
+        let t77 = t44 * t52;
+        let t81 = t14 + joint_accelerations[2];
+        let t82 = t81 - t56;
+        let t84 = t52 * t52;
+        let t85 = t84 - t62;
+        let t88 = t77 + t46;
+        let t90 = t38 * t82 - t48 * t85 + c2_arm * t88;
+        let t91 = s3_arm * t82;
+        let t95 = t63 - t84;
+        let t97 = t56 + t81;
+        let t100 = t53 - t74;
+        let t102 = t38 * t95 - t48 * t97 + c2_arm * t100;
         let t104 = c3_arm * t97;
-        let t109 = t45 * t61 - t44 + c2_arm * t82;
-        let t111 = 0.4 * c3_arm;
-        let t118 = t33 - 0.4 * (t19 + t24);
-        let t121 = 0.4 * t30;
-        let t122 = t34 + t121;
-        let t124 = 0.4 * t15;
-        let t126 = s3_arm * t122 + c3_arm * t124;
-        let t127 = 0.4 * t102;
-        let t129 = 0.4 * s3_arm;
-        let t134 = 0.4 * t104 - t129 * (t66 + t85) - s3_arm * t118;
-        let t137 = c3_arm * t122 - s3_arm * t124;
-        let t140 = 0.16 * t9;
-        let t141 = 0.4 * t122;
-        let t147 = t38 * c4_arm - c2_arm * s4_arm;
-        let t153 = s4_arm * t51 + c4_arm * t42;
-        let t155 = c4_arm * t78 - s4_arm * t82 - joint_velocities[3] * t153;
-        let t159 = t38 * s4_arm + c2_arm * c4_arm;
-        let t162 = c4_arm * t51 - s4_arm * t42;
-        let t163 = joint_velocities[3] - t41;
-        let t164 = t162 * t163;
-        let t165 = t159 * t164;
-        let t167 = t162 * t153;
-        let t169 = t147 * t155 - t165 - t45 * t167;
-        let t170 = s3_arm * s4_arm;
-        let t171 = t170 * t164;
-        let t172 = s3_arm * c4_arm;
-        let t176 = t171 - t155 * t172 - c3_arm * t167;
-        let t177 = t51 * t163;
-        let t182 = s4_arm * t78 + c4_arm * t82 + joint_velocities[3] * t162;
-        let t183 = t164 + t182;
-        let t185 = c4_arm * t183 - t177;
-        let t186 = t185 - t97;
-        let t188 = t153 * t163;
-        let t189 = t155 - t188;
-        let t192 = t162 * t162;
-        let t193 = t153 * t153;
-        let t194 = t192 - t193;
-        let t204 = joint_accelerations[3] - t53;
-        let t205 = t204 - t167;
-        let t207 = t163 * t163;
-        let t208 = t207 - t192;
-        let t211 = t188 + t155;
-        let t226 = t193 - t207;
-        let t228 = t167 + t204;
-        let t231 = t164 - t182;
-        let t245 = t165 - t147 * t188 - t45 * t204;
-        let t249 = t172 * t188 - t171 - c3_arm * t204;
-        let t250 = 0.4 * t45;
-        let t251 = c4_arm * t250;
-        let t252 = t193 + t207;
-        let t254 = s4_arm * t250;
-        let t257 = 0.4 * t38;
-        let t262 = s4_arm * t137 + c4_arm * t118;
-        let t267 = c4_arm * t111;
-        let t269 = s4_arm * t111;
-        let t280 = t192 + t207;
-        let t287 = c4_arm * t137 - s4_arm * t118;
-        let t291 = t251 * t228 - t254 * t280 - t257 * t189 + t45 * t287 - t147 * t126;
-        let t300 = t267 * t228 - t269 * t280 + t129 * t189 + t126 * t172 + c3_arm * t287;
-        let t307 = t147 * c5_arm - t45 * s5_arm;
-        let t313 = c5_arm * t163 - s5_arm * t162;
-        let t315 = c5_arm * t155 + s5_arm * t204 + joint_velocities[4] * t313;
-        let t319 = t147 * s5_arm + t45 * c5_arm;
-        let t322 = c5_arm * t162 + s5_arm * t163;
-        let t323 = t153 + joint_velocities[4];
-        let t324 = t322 * t323;
-        let t325 = t319 * t324;
-        let t327 = t322 * t313;
-        let t329 = t307 * t315 - t325 - t159 * t327;
-        let t332 = s5_arm * t172 - c3_arm * c5_arm;
-        let t333 = t332 * t324;
-        let t336 = c5_arm * t172 + c3_arm * s5_arm;
-        let t340 = t333 - t315 * t336 + t170 * t327;
-        let t341 = 0.39 * s4_arm;
-        let t342 = s5_arm * t341;
-        let t343 = 2.5641025641025643 * t342;
-        let t344 = t343 * t324;
-        let t345 = c5_arm * t341;
-        let t346 = 2.5641025641025643 * t345;
-        let t350 = t344 - t315 * t346 - c4_arm * t327;
-        let t351 = t162 * t323;
-        let t356 = c5_arm * t204 - s5_arm * t155 - joint_velocities[4] * t322;
-        let t357 = t324 - t356;
-        let t359 = t351 - c5_arm * t357;
-        let t360 = t228 - t359;
-        let t361 = t322 * t322;
-        let t362 = t313 * t313;
-        let t363 = t361 - t362;
-        let t366 = t313 * t323;
-        let t367 = t366 + t315;
-        let t383 = t182 + joint_accelerations[4];
-        let t384 = t327 + t383;
-        let t386 = t323 * t323;
-        let t387 = t386 - t361;
-        let t390 = t366 - t315;
-        let t399 = t346 * t384;
-        let t403 = s5_arm * t384;
-        let t406 = t169 + t245;
-        let t408 = t176 + t249;
-        let t412 = t362 - t386;
-        let t414 = t327 - t383;
-        let t417 = t324 + t356;
-        let t427 = t343 * t414;
-        let t431 = c5_arm * t414;
-        let t436 = t307 * t366 + t325 + t159 * t383;
-        let t440 = t336 * t366 + t333 + t170 * t383;
-        let t444 = c4_arm * t383 - (t346 * t366 + t344);
-        let t446 = t251 + 0.39 * t45;
-        let t449 = t257 + 0.39 * t147;
-        let t451 = c5_arm * t446 + s5_arm * t449;
-        let t452 = t362 + t386;
-        let t456 = s5_arm * t446 - c5_arm * t449;
-        let t462 = 0.39 * t280 - t262;
-        let t464 = 0.39 * t228;
-        let t465 = t287 + t464;
-        let t467 = 0.39 * t189;
-        let t468 = t126 + t467;
-        let t470 = s5_arm * t465 + c5_arm * t468;
-        let t475 = t267 + 0.39 * c3_arm;
-        let t478 = t129 + 0.39 * t172;
-        let t480 = s5_arm * t475 + c5_arm * t478;
-        let t484 = s5_arm * t478 - c5_arm * t475;
-        let t501 = 0.39 * c5_arm;
-        let t507 = t361 + t386;
-        let t515 = c5_arm * t465 - s5_arm * t468;
-        let t518 = t451 * t414 + t456 * t507 + t254 * t367 + t307 * t462 + t159 * t515;
-        let t527 = t484 * t414 - t480 * t507 - t269 * t367 + t462 * t336 + t170 * t515;
-        let t534 = 0.39 * t427 - t345 * t507 + t462 * t346 - c4_arm * t515;
-        let t536 = 0.39 * s5_arm;
-        let t540 = 0.39 * t431 + t536 * t507 - s5_arm * t462;
-        let t541 = 0.39 * t406;
-        let t542 = t291 - t541;
-        let t544 = 0.39 * t408;
-        let t545 = t300 - t544;
-        let t548 = s4_arm * t468;
-        let t552 = t140 - 0.39 * t542;
-        let t554 = t141 + 0.39 * t545;
-        let t555 = 0.39 * t548;
-        let t556 = 0.39 * t465;
-        let t562 = t307 * c6_arm + t159 * s6_arm;
-        let t568 = c6_arm * t323 - s6_arm * t322;
-        let t570 = c6_arm * t315 + s6_arm * t383 + joint_velocities[5] * t568;
-        let t574 = t159 * c6_arm - t307 * s6_arm;
-        let t577 = c6_arm * t322 + s6_arm * t323;
-        let t578 = joint_velocities[5] - t313;
-        let t579 = t577 * t578;
-        let t580 = t574 * t579;
-        let t582 = t577 * t568;
-        let t584 = t562 * t570 + t580 - t319 * t582;
-        let t587 = s6_arm * t336 - c6_arm * t170;
-        let t588 = t587 * t579;
-        let t591 = c6_arm * t336 + s6_arm * t170;
-        let t595 = t588 - t570 * t591 + t332 * t582;
-        let t598 = c4_arm * s6_arm - c6_arm * t346;
-        let t602 = s6_arm * t346 + c4_arm * c6_arm;
-        let t603 = t602 * t579;
-        let t606 = t570 * t598 + t603 + t343 * t582;
-        let t607 = s5_arm * c6_arm;
-        let t609 = s5_arm * s6_arm;
-        let t610 = t609 * t579;
-        let t613 = t570 * t607 - t610 + c5_arm * t582;
-        let t614 = t322 * t578;
-        let t619 = c6_arm * t383 - s6_arm * t315 - joint_velocities[5] * t577;
-        let t620 = t579 - t619;
-        let t622 = t614 - c6_arm * t620;
-        let t623 = t414 + t622;
-        let t624 = t568 * t578;
-        let t625 = t624 + t570;
-        let t629 = t577 * t577;
-        let t630 = t568 * t568;
-        let t631 = t629 - t630;
-        let t651 = joint_accelerations[5] - t356;
-        let t652 = t582 + t651;
-        let t654 = t578 * t578;
-        let t655 = t654 - t629;
-        let t658 = t624 - t570;
-        let t687 = t630 - t654;
-        let t689 = t582 - t651;
-        let t692 = t579 + t619;
-        let t716 = t562 * t624 - t580 + t319 * t651;
-        let t720 = t591 * t624 + t588 + t332 * t651;
-        let t724 = t598 * t624 - t603 - t343 * t651;
-        let t728 = t607 * t624 + t610 - c5_arm * t651;
-        let t731 = c6_arm * t451 + s6_arm * t254;
-        let t732 = t630 + t654;
-        let t736 = s6_arm * t451 - c6_arm * t254;
-        let t744 = s6_arm * t515 + c6_arm * t462;
-        let t753 = c6_arm * t484 - s6_arm * t269;
-        let t757 = s6_arm * t484 + c6_arm * t269;
-        let t766 = c6_arm * t342;
-        let t768 = s6_arm * t342;
-        let t775 = c6_arm * t501;
-        let t777 = s6_arm * t501;
-        let t789 = c6_arm * t515 - s6_arm * t462;
-        let t793 = t629 + t654;
-        let t798 = t562 * t470 - t319 * t789 - (t731 * t689 + t736 * t793 + t456 * t625);
-        let t807 = t753 * t689 + t757 * t793 - t480 * t625 + t332 * t789 - t470 * t591;
-        let t816 = t766 * t689 + t768 * t793 - t345 * t625 + t470 * t598 + t343 * t789;
-        let t825 = t775 * t689 + t777 * t793 + t536 * t625 + t470 * t607 + c5_arm * t789;
-        let t826 = s6_arm * t470;
-        let t832 = t562 * c7_arm - t319 * s7_arm;
-        let t838 = s7_arm * t577 + c7_arm * t578;
-        let t840 = c7_arm * t570 - s7_arm * t651 - joint_velocities[6] * t838;
-        let t844 = t562 * s7_arm + t319 * c7_arm;
-        let t847 = c7_arm * t577 - s7_arm * t578;
-        let t848 = t568 + joint_velocities[6];
-        let t849 = t847 * t848;
-        let t850 = t844 * t849;
-        let t852 = t847 * t838;
-        let t854 = t832 * t840 - t850 + t574 * t852;
-        let t857 = s7_arm * t332 - c7_arm * t591;
-        let t861 = s7_arm * t591 + c7_arm * t332;
-        let t862 = t861 * t849;
-        let t865 = t840 * t857 + t862 + t587 * t852;
-        let t868 = c7_arm * t598 + s7_arm * t343;
-        let t872 = c7_arm * t343 - s7_arm * t598;
-        let t873 = t872 * t849;
-        let t876 = t840 * t868 + t873 + t602 * t852;
-        let t879 = c7_arm * t607 + c5_arm * s7_arm;
-        let t883 = c5_arm * c7_arm - s7_arm * t607;
-        let t884 = t883 * t849;
-        let t887 = t840 * t879 + t884 - t609 * t852;
-        let t888 = s6_arm * c7_arm;
-        let t890 = s6_arm * s7_arm;
-        let t891 = t890 * t849;
-        let t894 = t840 * t888 - t891 + c6_arm * t852;
-        let t895 = t577 * t848;
-        let t900 = s7_arm * t570 + c7_arm * t651 + joint_velocities[6] * t847;
-        let t901 = t849 + t900;
-        let t903 = c7_arm * t901 - t895;
-        let t904 = t689 + t903;
-        let t905 = t847 * t847;
-        let t906 = t838 * t838;
-        let t907 = t905 - t906;
-        let t910 = t838 * t848;
-        let t911 = t840 - t910;
-        let t937 = t619 + joint_accelerations[6];
-        let t938 = t937 - t852;
-        let t940 = t848 * t848;
-        let t941 = t940 - t905;
-        let t944 = t910 + t840;
-        let t980 = t906 - t940;
-        let t982 = t852 + t937;
-        let t985 = t849 - t900;
-        let t1033 = s7_arm * t731 + c7_arm * t456;
-        let t1037 = s7_arm * t456 - c7_arm * t731;
-        let t1038 = t906 + t940;
-        let t1046 = s7_arm * t789 + c7_arm * t470;
-        let t1052 = c7_arm * t480 - s7_arm * t753;
-        let t1056 = c7_arm * t753 + s7_arm * t480;
-        let t1065 = t341 * t883;
-        let t1067 = t341 * t879;
-        let t1081 = c7_arm * t775 - s7_arm * t536;
-        let t1085 = s7_arm * t775 + c7_arm * t536;
-        let t1097 = t905 + t940;
-        let t1104 = c7_arm * t789 - s7_arm * t470;
+        let t109 = t54 - t38 * t77 + c2_arm * t81;
+        let t110 = t9 * t52;
+        let t114 = t33 + t85 * 0.4;
+        let t117 = 0.4 * t30;
+        let t118 = t34 + t117;
+        let t120 = 0.4 * t7;
+        let t122 = s3_arm * t118 + c3_arm * t120;
+        let t123 = 0.4 * t102;
+        let t128 = 0.4 * t104 - s3_arm * (t114 + t64 * 0.4);
+        let t131 = c3_arm * t118 - s3_arm * t120;
+        let t134 = 0.16 * t8;
+        let t135 = 0.4 * t118;
+        let t141 = t38 * c4_arm - c2_arm * s4_arm;
+        let t147 = s4_arm * t51 + c4_arm * t52;
+        let t149 = c4_arm * t46 - s4_arm * t81 - joint_velocities[3] * t147;
+        let t153 = t38 * s4_arm + c2_arm * c4_arm;
+        let t156 = c4_arm * t51 - s4_arm * t52;
+        let t157 = joint_velocities[3] - t44;
+        let t158 = t156 * t157;
+        let t159 = t153 * t158;
+        let t161 = t156 * t147;
+        let t163 = t141 * t149 - t159 - t48 * t161;
+        let t164 = s3_arm * s4_arm;
+        let t165 = t164 * t158;
+        let t166 = s3_arm * c4_arm;
+        let t170 = t165 - t149 * t166 - c3_arm * t161;
+        let t171 = t51 * t157;
+        let t172 = 0.4 * s4_arm;
+        let t173 = t147 * t157;
+        let t174 = t149 - t173;
+        let t175 = t172 * t174;
+        let t176 = 2.5 * t175;
+        let t177 = t171 + t176;
+        let t182 = s4_arm * t46 + c4_arm * t81 + joint_velocities[3] * t156;
+        let t183 = t158 + t182;
+        let t187 = t156 * t156;
+        let t188 = t147 * t147;
+        let t189 = t187 - t188;
+        let t192 = t97 + t177;
+        let t197 = s4_arm * t183;
+        let t198 = c4_arm * t174;
+        let t200 = joint_accelerations[3] - t74;
+        let t201 = t200 - t161;
+        let t203 = t157 * t157;
+        let t204 = t203 - t187;
+        let t207 = t173 + t149;
+        let t215 = s4_arm * t201;
+        let t222 = t188 - t203;
+        let t224 = t161 + t200;
+        let t227 = t158 - t182;
+        let t236 = c4_arm * t224;
+        let t241 = t159 - t141 * t173 - t48 * t200;
+        let t245 = t166 * t173 - t165 - c3_arm * t200;
+        let t249 = t33 - 0.4 * (t18 + t23);
+        let t251 = s4_arm * t131 + c4_arm * t249;
+        let t253 = 0.4 * c4_arm;
+        let t257 = t251 + 0.4 * t215 + t253 * (t188 + t203);
+        let t259 = t253 * t183;
+        let t262 = t122 + 0.4 * t197;
+        let t273 = t122 + 0.4 * t198;
+        let t277 = t187 + t203;
+        let t283 = c4_arm * t131 - s4_arm * t249;
+        let t284 = t172 * t277 - 0.4 * t236 - t283;
+        let t286 = t141 * t273 + t153 * t175 + t48 * t284;
+        let t291 = t166 * t273 + t164 * t175 - c3_arm * t284;
+        let t298 = t141 * c5_arm - t48 * s5_arm;
+        let t304 = c5_arm * t157 - s5_arm * t156;
+        let t306 = c5_arm * t149 + s5_arm * t200 + joint_velocities[4] * t304;
+        let t310 = t141 * s5_arm + t48 * c5_arm;
+        let t313 = c5_arm * t156 + s5_arm * t157;
+        let t314 = t147 + joint_velocities[4];
+        let t315 = t313 * t314;
+        let t316 = t310 * t315;
+        let t318 = t313 * t304;
+        let t320 = t298 * t306 - t316 - t153 * t318;
+        let t323 = s5_arm * t166 - c3_arm * c5_arm;
+        let t324 = t323 * t315;
+        let t327 = c5_arm * t166 + c3_arm * s5_arm;
+        let t331 = t324 - t306 * t327 + t164 * t318;
+        let t332 = 0.39 * s4_arm;
+        let t333 = s5_arm * t332;
+        let t334 = 2.5641025641025643 * t333;
+        let t335 = t334 * t315;
+        let t336 = c5_arm * t332;
+        let t337 = 2.5641025641025643 * t336;
+        let t341 = t335 - t306 * t337 - c4_arm * t318;
+        let t344 = s5_arm * t306 + c5_arm * t315;
+        let t345 = t313 * t313;
+        let t346 = t304 * t304;
+        let t347 = t345 - t346;
+        let t353 = c5_arm * t200 - s5_arm * t149 - joint_velocities[4] * t313;
+        let t354 = t315 - t353;
+        let t356 = t304 * t314;
+        let t357 = t356 + t306;
+        let t366 = t337 * t354;
+        let t367 = t334 * t357;
+        let t374 = t182 + joint_accelerations[4];
+        let t375 = t318 + t374;
+        let t377 = t314 * t314;
+        let t378 = t377 - t345;
+        let t381 = t356 - t306;
+        let t390 = t337 * t375;
+        let t394 = s5_arm * t375;
+        let t397 = t163 + t241;
+        let t399 = t170 + t245;
+        let t403 = t346 - t377;
+        let t405 = t318 - t374;
+        let t408 = t315 + t353;
+        let t418 = t334 * t405;
+        let t422 = c5_arm * t405;
+        let t427 = t298 * t356 + t316 + t153 * t374;
+        let t431 = t327 * t356 + t324 + t164 * t374;
+        let t435 = c4_arm * t374 - (t337 * t356 + t335);
+        let t436 = t156 * t314;
+        let t437 = 1.0256410256410255 * t333;
+        let t439 = t253 + 0.39;
+        let t441 = t437 * t354 - t439 * t375;
+        let t444 = 0.39 * t277 - t251;
+        let t446 = t346 + t377;
+        let t449 = t444 + 0.4 * t366 - t439 * t446;
+        let t455 = 0.39 * t224;
+        let t456 = t283 + t455;
+        let t458 = 0.39 * t174;
+        let t459 = t122 + t458;
+        let t461 = s5_arm * t456 + c5_arm * t459;
+        let t462 = t437 * t446 - 0.4 * t390 - t461;
+        let t476 = 0.39 * c5_arm;
+        let t482 = t345 + t377;
+        let t485 = 0.4 * t367 + t439 * t482 - t444;
+        let t488 = 1.0256410256410255 * t336;
+        let t490 = t439 * t405 + t488 * t357;
+        let t498 = c5_arm * t456 - s5_arm * t459;
+        let t499 = t488 * t482 - 0.4 * t418 - t498;
+        let t501 = t298 * t485 - t310 * t490 + t153 * t499;
+        let t506 = t323 * t490 - t327 * t485 - t164 * t499;
+        let t511 = t334 * t490 - t337 * t485 + c4_arm * t499;
+        let t513 = 0.39 * s5_arm;
+        let t517 = 0.39 * t422 + t513 * t482 - s5_arm * t444;
+        let t529 = 0.16 * (t8 + t397 * 0.950625 + 2.4375 * t286);
+        let t535 = 0.16 * (0.950625 * t399 - 2.5 * t118 - 2.4375 * t291);
+        let t536 = t332 * t459;
+        let t537 = 0.39 * t456;
+        let t543 = t298 * c6_arm + t153 * s6_arm;
+        let t549 = c6_arm * t314 - s6_arm * t313;
+        let t551 = c6_arm * t306 + s6_arm * t374 + joint_velocities[5] * t549;
+        let t555 = t153 * c6_arm - t298 * s6_arm;
+        let t558 = c6_arm * t313 + s6_arm * t314;
+        let t559 = joint_velocities[5] - t304;
+        let t560 = t558 * t559;
+        let t561 = t555 * t560;
+        let t563 = t558 * t549;
+        let t565 = t543 * t551 + t561 - t310 * t563;
+        let t568 = s6_arm * t327 - c6_arm * t164;
+        let t569 = t568 * t560;
+        let t572 = c6_arm * t327 + s6_arm * t164;
+        let t576 = t569 - t551 * t572 + t323 * t563;
+        let t578 = c6_arm * t337;
+        let t579 = c4_arm * s6_arm - t578;
+        let t581 = s6_arm * t337;
+        let t583 = t581 + c4_arm * c6_arm;
+        let t584 = t583 * t560;
+        let t587 = t551 * t579 + t584 + t334 * t563;
+        let t588 = s5_arm * c6_arm;
+        let t590 = s5_arm * s6_arm;
+        let t591 = t590 * t560;
+        let t594 = t551 * t588 - t591 + c5_arm * t563;
+        let t597 = s6_arm * t551 + c6_arm * t560;
+        let t598 = t549 * t559;
+        let t599 = t598 + t551;
+        let t605 = c6_arm * t374 - s6_arm * t306 - joint_velocities[5] * t558;
+        let t606 = t560 - t605;
+        let t609 = t558 * t558;
+        let t610 = t549 * t549;
+        let t611 = t609 - t610;
+        let t624 = t405 + t597;
+        let t632 = joint_accelerations[5] - t353;
+        let t633 = t563 + t632;
+        let t635 = t559 * t559;
+        let t636 = t635 - t609;
+        let t639 = t598 - t551;
+        let t668 = t610 - t635;
+        let t670 = t563 - t632;
+        let t673 = t560 + t605;
+        let t697 = t543 * t598 - t561 + t310 * t632;
+        let t701 = t572 * t598 + t569 + t323 * t632;
+        let t705 = t579 * t598 - t584 - t334 * t632;
+        let t709 = t588 * t598 + t591 - c5_arm * t632;
+        let t710 = t313 * t559;
+        let t713 = 0.4 * t581 + c6_arm * t439;
+        let t716 = t713 * t606 + t437 * t633;
+        let t718 = t610 + t635;
+        let t722 = s6_arm * t439 - 0.4 * t578;
+        let t725 = t437 * t718 - t722 * t606 - t461;
+        let t733 = s6_arm * t498 + c6_arm * t444;
+        let t734 = t722 * t633 + t713 * t718 - t733;
+        let t748 = c6_arm * t476;
+        let t750 = s6_arm * t476;
+        let t760 = t609 + t635;
+        let t763 = t461 + t713 * t599 - t437 * t760;
+        let t767 = t437 * t670 + t722 * t599;
+        let t772 = c6_arm * t498 - s6_arm * t444;
+        let t776 = t772 + t722 * t760 + t713 * t670;
+        let t778 = t543 * t763 - t555 * t767 - t310 * t776;
+        let t783 = t323 * t776 - (t572 * t763 + t568 * t767);
+        let t788 = t579 * t763 - t583 * t767 + t334 * t776;
+        let t797 = t748 * t670 + t750 * t760 + t513 * t599 + t461 * t588 + c5_arm * t772;
+        let t798 = s6_arm * t461;
+        let t804 = t543 * c7_arm - t310 * s7_arm;
+        let t810 = s7_arm * t558 + c7_arm * t559;
+        let t812 = c7_arm * t551 - s7_arm * t632 - joint_velocities[6] * t810;
+        let t816 = t543 * s7_arm + t310 * c7_arm;
+        let t819 = c7_arm * t558 - s7_arm * t559;
+        let t820 = t549 + joint_velocities[6];
+        let t821 = t819 * t820;
+        let t822 = t816 * t821;
+        let t824 = t819 * t810;
+        let t826 = t804 * t812 - t822 + t555 * t824;
+        let t829 = s7_arm * t323 - c7_arm * t572;
+        let t833 = s7_arm * t572 + c7_arm * t323;
+        let t834 = t833 * t821;
+        let t837 = t812 * t829 + t834 + t568 * t824;
+        let t839 = s7_arm * t334;
+        let t840 = c7_arm * t579 + t839;
+        let t842 = c7_arm * t334;
+        let t844 = t842 - s7_arm * t579;
+        let t845 = t844 * t821;
+        let t848 = t812 * t840 + t845 + t583 * t824;
+        let t851 = c7_arm * t588 + c5_arm * s7_arm;
+        let t855 = c5_arm * c7_arm - s7_arm * t588;
+        let t856 = t855 * t821;
+        let t859 = t812 * t851 + t856 - t590 * t824;
+        let t860 = s6_arm * c7_arm;
+        let t862 = s6_arm * s7_arm;
+        let t863 = t862 * t821;
+        let t866 = t812 * t860 - t863 + c6_arm * t824;
+        let t867 = t558 * t820;
+        let t868 = t810 * t820;
+        let t869 = t812 - t868;
+        let t871 = t867 + s7_arm * t869;
+        let t872 = t819 * t819;
+        let t873 = t810 * t810;
+        let t874 = t872 - t873;
+        let t880 = s7_arm * t551 + c7_arm * t632 + joint_velocities[6] * t819;
+        let t881 = t821 + t880;
+        let t902 = t871 - t670;
+        let t909 = t605 + joint_accelerations[6];
+        let t910 = t909 - t824;
+        let t912 = t820 * t820;
+        let t913 = t912 - t872;
+        let t916 = t868 + t812;
+        let t952 = t873 - t912;
+        let t954 = t824 + t909;
+        let t957 = t821 - t880;
+        let t1005 = 0.4 * t842 - s7_arm * t722;
+        let t1008 = t1005 * t881 - t713 * t910;
+        let t1010 = t873 + t912;
+        let t1014 = c7_arm * t722 + 0.4 * t839;
+        let t1017 = t733 - (t713 * t1010 + t1014 * t881);
+        let t1025 = s7_arm * t772 + c7_arm * t461;
+        let t1026 = t1014 * t910 + t1005 * t1010 - t1025;
+        let t1044 = c7_arm * t748 - s7_arm * t513;
+        let t1048 = s7_arm * t748 + c7_arm * t513;
+        let t1059 = t872 + t912;
+        let t1062 = t1005 * t869 + t713 * t1059 - t733;
+        let t1066 = t713 * t954 + t1014 * t869;
+        let t1074 = c7_arm * t772 - s7_arm * t461;
+        let t1075 = t1005 * t954 - t1014 * t1059 - t1074;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t9, c2_arm * t15 - s2_arm * t7,
-                s2_arm * (t11 + joint_accelerations[1]) + c2_arm * (t24 - t19), -t8,
-                s2_arm * (t20 - t24) - c2_arm * t30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t59,
-                c2_arm * t68 - s2_arm * (t65 + t64), t91, t58, t102, t109, -(0.4 * t91), -t127,
-                0.8 * t9, t140, 0.0, 0.0, 0.0, 0.0, t169, -(t147 * t183 + t159 * t189 + t45 * t194),
-                t147 * t205 - t159 * t208 - t45 * t211, t59 + t109 - t169,
-                t147 * t226 - t159 * t228 - t45 * t231, t245,
-                t251 * t252 + t254 * t205 - t257 * t183 + t45 * t262 - t159 * t126, t291, -t127,
-                t140, 0.0, 0.0, 0.0, 0.0, t329, t159 * t363 - (t307 * t357 + t319 * t367),
-                t307 * t384 - t319 * t387 - t159 * t390, t406 - t329,
-                t307 * t412 + t319 * t414 + t159 * t417, t436,
-                t451 * t452 + t456 * t384 - t254 * t357 - (t319 * t462 + t159 * t470), -t518,
-                t541 - t542, t552, 0.0, 0.0, 0.0, 0.0, t584,
-                t574 * t625 - t562 * t620 + t319 * t631, t562 * t652 + t574 * t655 - t319 * t658,
-                t329 + t436 - t584, t562 * t687 - t574 * t689 + t319 * t692, t716,
-                t731 * t732 + t736 * t652 - t456 * t620 - (t574 * t470 + t319 * t744), t798, t518,
-                t552, 0.0, 0.0, 0.0, 0.0, t854, t574 * t907 - (t832 * t901 + t844 * t911),
-                t832 * t938 - t844 * t941 + t574 * t944, t584 + t716 - t854,
-                t832 * t980 - t844 * t982 + t574 * t985, t850 - t832 * t910 + t574 * t937,
-                t1033 * t938 - t1037 * t1038 + t736 * t901
-                    - (t844 * t744 + t574 * t1046),
-                t736 * t911 - (t1037 * t982 + t1033 * t1097)
-                    - (t832 * t744 + t574 * t1104),
-                t798,
-                t552,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t8,
+                c2_arm * t7 - s2_arm * (t12 - t14),
+                s2_arm * (t10 + joint_accelerations[1]) + c2_arm * (t23 - t18),
+                joint_accelerations[0] - t8, s2_arm * (t19 - t23) - c2_arm * t30, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t58, c2_arm * t64 - s2_arm * (t61 + t66), t90, t8 - t58, t102,
+                t109, -(0.4 * t90), -t123, 0.8 * t8, t134, 0.0, 0.0, 0.0, 0.0, t163,
+                -(t141 * t183 + t153 * t174 + t48 * t189), t141 * t201 - t153 * t204 - t48 * t207,
+                t58 + t109 - t163, t141 * t222 - t153 * t224 - t48 * t227, t241,
+                t48 * t257 - (t141 * t259 + t153 * t262), -t286, -t123, t134, 0.0, 0.0, 0.0, 0.0,
+                t320, t153 * t347 - (t298 * t354 + t310 * t357),
+                t298 * t375 - t310 * t378 - t153 * t381, t397 - t320,
+                t298 * t403 + t310 * t405 + t153 * t408, t427,
+                t298 * t441 - t310 * t449 + t153 * t462, t501, t286 + t397 * 0.78, t529, 0.0, 0.0,
+                0.0, 0.0, t565, t555 * t599 - t543 * t606 + t310 * t611,
+                t543 * t633 + t555 * t636 - t310 * t639, t320 + t427 - t565,
+                t543 * t668 - t555 * t670 + t310 * t673, t697,
+                t543 * t716 + t555 * t725 + t310 * t734, t778, -t501, t529, 0.0, 0.0, 0.0, 0.0,
+                t826, t555 * t874 - (t804 * t881 + t816 * t869),
+                t804 * t910 - t816 * t913 + t555 * t916, t565 + t697 - t826,
+                t804 * t952 - t816 * t954 + t555 * t957, t822 - t804 * t868 + t555 * t909,
+                t804 * t1008 - t816 * t1017 + t555 * t1026,
+                t804 * t1062 + t816 * t1066 + t555 * t1075, t778, t529, 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t10, t13, joint_accelerations[1], t33,
                 -t34, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t65,
-                s3_arm * t62 - c3_arm * (t78 - t43), -(t92 + c3_arm * t86), t64,
-                -(s3_arm * t95 + t104), t60, t111 * (t67 + t85) + 0.4 * t92 + c3_arm * t118, t134,
-                -(t121 + t122), -t141, 0.0, 0.0, 0.0, 0.0, t176,
-                s3_arm * (t186 + t185) - c3_arm * t194, t170 * t208 - t172 * t205 - c3_arm * t211,
-                -(t176 + t65 - t60), t170 * t228 - t172 * t226 - c3_arm * t231, t249,
-                t267 * t252 + t269 * t205 + t129 * t183 + t126 * t170 + c3_arm * t262, t300, t134,
-                -t141, 0.0, 0.0, 0.0, 0.0, t340, t336 * t357 + t332 * t367 - t170 * t363,
-                t332 * t387 - t336 * t384 + t170 * t390, t408 - t340,
-                -(t336 * t412 + t332 * t414 + t170 * t417), -t440,
-                t480 * t384 - t484 * t452 - t269 * t357 + t462 * t332 + t170 * t470, t527,
-                t544 - t545, -t554, 0.0, 0.0, 0.0, 0.0, t595,
-                t591 * t620 + t587 * t625 - t332 * t631, t587 * t655 - t591 * t652 + t332 * t658,
-                t340 - t440 - t595, -(t591 * t687 + t587 * t689 + t332 * t692), -t720,
-                t332 * t744 - t470 * t587 - (t753 * t732 + t757 * t652 + t480 * t620), t807, -t527,
-                -t554, 0.0, 0.0, 0.0, 0.0, t865, t861 * t911 - t857 * t901 + t587 * t907,
-                t857 * t938 + t861 * t941 + t587 * t944, t595 - t720 - t865,
-                t857 * t980 + t861 * t982 + t587 * t985, t587 * t937 - (t857 * t910 + t862),
-                t1052 * t938 - t1056 * t1038 - t757 * t901 + t744 * t861 - t587 * t1046,
-                -(t1056 * t982 + t1052 * t1097 + t757 * t911 + t744 * t857
-                    + t587 * t1104),
-                t807,
-                -t554,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t61,
+                s3_arm * (t53 + t74) - c3_arm * (t46 - t77), -(t91 + c3_arm * t85), t66,
+                -(s3_arm * t95 + t104), t110, 0.4 * t91 + c3_arm * t114, t128, -(t117 + t118),
+                -t135, 0.0, 0.0, 0.0, 0.0, t170, s3_arm * (t177 + t192) - c3_arm * t189,
+                t164 * t204 - t166 * t201 - c3_arm * t207, t110 - t61 - t170,
+                t164 * t224 - t166 * t222 - c3_arm * t227, t245,
+                t166 * t259 + t164 * t262 + c3_arm * t257, t291, t128, -t135, 0.0, 0.0, 0.0, 0.0,
+                t331, t327 * t354 + t323 * t357 - t164 * t347,
+                t323 * t378 - t327 * t375 + t164 * t381, t399 - t331,
+                -(t327 * t403 + t323 * t405 + t164 * t408), -t431,
+                t323 * t449 - t327 * t441 - t164 * t462, t506, 0.78 * t399 - t291, t535, 0.0, 0.0,
+                0.0, 0.0, t576, t572 * t606 + t568 * t599 - t323 * t611,
+                t568 * t636 - t572 * t633 + t323 * t639, t331 - t431 - t576,
+                -(t572 * t668 + t568 * t670 + t323 * t673), -t701,
+                t568 * t725 - t572 * t716 - t323 * t734, t783, -t506, t535, 0.0, 0.0, 0.0, 0.0,
+                t837, t833 * t869 - t829 * t881 + t568 * t874,
+                t829 * t910 + t833 * t913 + t568 * t916, t576 - t701 - t837,
+                t829 * t952 + t833 * t954 + t568 * t957, t568 * t909 - (t829 * t868 + t834),
+                t829 * t1008 + t833 * t1017 + t568 * t1026,
+                t829 * t1062 - t833 * t1066 + t568 * t1075, t783, t535, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t56, t68, t89, -t56, t100, t82, -t126, -t137, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t186,
-                s4_arm * t183 - c4_arm * t189, -(s4_arm * t205 + c4_arm * t208), t185,
-                -(s4_arm * t226 + c4_arm * t228), t177, -(c4_arm * t126), s4_arm * t126, -t137, 0.0,
-                0.0, 0.0, 0.0, 0.0, t350, s4_arm * (t360 - t359) + c4_arm * t363,
-                t343 * t387 - t399 - c4_arm * t390, -(t350 + t186 - t177),
-                c4_arm * t417 - (t346 * t412 + t427), t444,
-                0.39 * t399 - t342 * t452 + t462 * t343 - c4_arm * t470, t534,
-                -(s4_arm * t467 + t548), -t555, 0.0, 0.0, 0.0, 0.0, t606,
-                t602 * t625 - t598 * t620 - t343 * t631, t598 * t652 + t602 * t655 + t343 * t658,
-                t350 + t444 - t606, t598 * t687 - t602 * t689 - t343 * t692, t724,
-                t343 * t744 - t470 * t602 - (t766 * t732 + t768 * t652 + t345 * t620), t816, -t534,
-                -t555, 0.0, 0.0, 0.0, 0.0, t876, t872 * t911 - t868 * t901 + t602 * t907,
-                t868 * t938 + t872 * t941 + t602 * t944, t606 + t724 - t876,
-                t868 * t980 + t872 * t982 + t602 * t985, t602 * t937 - (t868 * t910 + t873),
-                t1065 * t938 - t1067 * t1038 - t768 * t901 + t744 * t872 - t602 * t1046,
-                -(t1067 * t982 + t1065 * t1097 + t768 * t911 + t744 * t868
-                    + t602 * t1104),
-                t816,
-                -t555,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                t56, t64, t88, -t56, t100, t81, -t122, -t131, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t177,
+                t197 - t198, -(t215 + c4_arm * t204), t192, -(s4_arm * t222 + t236), t171,
+                -(c4_arm * t122), s4_arm * t122, -t131, 0.0, 0.0, 0.0, 0.0, 0.0, t341,
+                t366 + t367 + c4_arm * t347, t334 * t378 - t390 - c4_arm * t381, -(t176 + t341),
+                c4_arm * t408 - (t337 * t403 + t418), t435,
+                t334 * t449 - t337 * t441 + c4_arm * t462, t511, -(s4_arm * (t458 + t459)), -t536,
+                0.0, 0.0, 0.0, 0.0, t587, t583 * t599 - t579 * t606 - t334 * t611,
+                t579 * t633 + t583 * t636 + t334 * t639, t341 + t435 - t587,
+                t579 * t668 - t583 * t670 - t334 * t673, t705,
+                t579 * t716 + t583 * t725 - t334 * t734, t788, -t511, -t536, 0.0, 0.0, 0.0, 0.0,
+                t848, t844 * t869 - t840 * t881 + t583 * t874,
+                t840 * t910 + t844 * t913 + t583 * t916, t587 + t705 - t848,
+                t840 * t952 + t844 * t954 + t583 * t957, t583 * t909 - (t840 * t868 + t845),
+                t840 * t1008 + t844 * t1017 + t583 * t1026,
+                t840 * t1062 - t844 * t1066 + t583 * t1075, t788, -t536, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t167, t194,
-                t211, -t167, t231, t204, -t262, -t287, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t360,
-                c5_arm * t367 - s5_arm * t357, t403 + c5_arm * t387, t359, s5_arm * t412 - t431,
-                -t351, c5_arm * t462 - (t501 * t452 + 0.39 * t403), t540, t464 + t465, t556, 0.0,
-                0.0, 0.0, 0.0, t613, -(c5_arm * t631 - s5_arm * (t623 + t622)),
-                t607 * t652 - t609 * t655 + c5_arm * t658, -(t613 - (t360 - t351)),
-                t607 * t687 + t609 * t689 - c5_arm * t692, t728,
-                t536 * t620 - (t775 * t732 + t777 * t652) + t470 * t609 + c5_arm * t744, t825,
-                -t540, t556, 0.0, 0.0, 0.0, 0.0, t887, t883 * t911 - t879 * t901 - t609 * t907,
-                t879 * t938 + t883 * t941 - t609 * t944, t613 + t728 - t887,
-                t879 * t980 + t883 * t982 - t609 * t985, -(t879 * t910 + t884 + t609 * t937),
-                t744 * t883 + t609 * t1046
-                    - (t1081 * t1038 + t1085 * t938 + t777 * t901),
-                t1085 * t1097 - t1081 * t982 - t777 * t911 + t609 * t1104 - t744 * t879,
-                t825,
-                t556,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t161, t189,
+                t207, -t161, t227, t200, -t251, -t283, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t344,
+                c5_arm * t357 - s5_arm * t354, t394 + c5_arm * t378, t224 - t344,
+                s5_arm * t403 - t422, -t436, c5_arm * t444 - (t476 * t446 + 0.39 * t394), t517,
+                t455 + t456, t537, 0.0, 0.0, 0.0, 0.0, t594,
+                -(s5_arm * (t597 + t624) + c5_arm * t611),
+                t588 * t633 - t590 * t636 + c5_arm * t639, t344 - t436 - t594,
+                t588 * t668 + t590 * t670 - c5_arm * t673, t709,
+                t513 * t606 - (t748 * t718 + t750 * t633) + t461 * t590 + c5_arm * t733, t797,
+                -t517, t537, 0.0, 0.0, 0.0, 0.0, t859, t855 * t869 - t851 * t881 - t590 * t874,
+                t851 * t910 + t855 * t913 - t590 * t916, t594 + t709 - t859,
+                t851 * t952 + t855 * t954 - t590 * t957, -(t851 * t868 + t856 + t590 * t909),
+                t733 * t855 + t590 * t1025
+                    - (t1044 * t1010 + t1048 * t910 + t750 * t881),
+                t1048 * t1059 - t1044 * t954 - t750 * t869 + t590 * t1074 - t733 * t851,
+                t797,
+                t537,
                 0.0,
                 0.0,
                 0.0,
@@ -828,26 +813,26 @@ impl KukaLwr {
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t327, t363, -t390, t327,
-                t417, t383, -t470, -t515, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, -t623,
-                c6_arm * t625 - s6_arm * t620, s6_arm * t652 + c6_arm * t655, t622,
-                s6_arm * t687 - c6_arm * t689, -t614, -(c6_arm * t470), t826, t515, 0.0, 0.0, 0.0,
-                0.0, 0.0, t894, c6_arm * t907 - s6_arm * (t904 + t903),
-                t888 * t938 - t890 * t941 + c6_arm * t944, -(t894 + t623 + t614),
-                t888 * t980 - t890 * t982 + c6_arm * t985, t891 - t888 * t910 + c6_arm * t937,
-                -(t744 * t890 + c6_arm * t1046), -(t744 * t888 + c6_arm * t1104), t826, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t318, t347, -t381, t318,
+                t408, t374, -t461, -t498, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, t597,
+                c6_arm * t599 - s6_arm * t606, s6_arm * t633 + c6_arm * t636, -t624,
+                s6_arm * t668 - c6_arm * t670, -t710, -(c6_arm * t461), t798, t498, 0.0, 0.0, 0.0,
+                0.0, 0.0, t866, c6_arm * t874 - s6_arm * (t871 + t902),
+                t860 * t910 - t862 * t913 + c6_arm * t916, t597 - t710 - t866,
+                t860 * t952 - t862 * t954 + c6_arm * t957, t863 - t860 * t868 + c6_arm * t909,
+                -(t733 * t862 + c6_arm * t1025), -(t733 * t860 + c6_arm * t1074), t798, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t582, t631, -t658, t582, t692, t651, -t744,
-                -t789, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -t904,
-                s7_arm * t901 - c7_arm * t911, -(s7_arm * t938 + c7_arm * t941), t903,
-                -(s7_arm * t980 + c7_arm * t982), t895, -(c7_arm * t744), s7_arm * t744, -t789, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t563, t611, -t639, t563, t673, t632, -t733,
+                -t772, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -t871,
+                s7_arm * t881 - c7_arm * t869, -(s7_arm * t910 + c7_arm * t913), t902,
+                -(s7_arm * t952 + c7_arm * t954), t867, -(c7_arm * t733), s7_arm * t733, -t772, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -855,7 +840,7 @@ impl KukaLwr {
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t852, t907, t944, -t852, t985, t937, -t1046, -t1104, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t824, t874, t916, -t824, t957, t909, -t1025, -t1074, 0.0,
                 0.0, joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],
@@ -871,7 +856,7 @@ impl KukaLwr {
     /// Output: 7 x 69.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1071 operations (443 additions, 628 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 898 intermediates.
+    /// 1026 operations (424 additions, 602 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 853 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 7],
@@ -929,201 +914,216 @@ impl KukaLwr {
         let t98 = t52 - t71;
         let t100 = t37 * t93 - t47 * t95 + c2_arm * t98;
         let t102 = c3_arm * t95;
-        let t109 = 0.4 * c3_arm;
-        let t116 = t32 - 0.4 * (t18 + t23);
-        let t120 = t33 + 0.4 * t29;
-        let t122 = 0.4 * t7;
-        let t124 = s3_arm * t120 + c3_arm * t122;
-        let t127 = 0.4 * s3_arm;
-        let t135 = c3_arm * t120 - s3_arm * t122;
-        let t141 = t37 * c4_arm - c2_arm * s4_arm;
-        let t147 = s4_arm * t50 + c4_arm * t51;
-        let t149 = c4_arm * t45 - s4_arm * t80 - joint_velocities[3] * t147;
-        let t153 = t37 * s4_arm + c2_arm * c4_arm;
-        let t156 = c4_arm * t50 - s4_arm * t51;
-        let t157 = joint_velocities[3] - t43;
-        let t158 = t156 * t157;
-        let t159 = t153 * t158;
-        let t161 = t156 * t147;
-        let t164 = s3_arm * s4_arm;
-        let t165 = t164 * t158;
-        let t166 = s3_arm * c4_arm;
-        let t171 = t50 * t157;
-        let t172 = t147 * t157;
-        let t173 = t149 - t172;
-        let t180 = s4_arm * t45 + c4_arm * t80 + joint_velocities[3] * t156;
-        let t181 = t158 + t180;
-        let t185 = t156 * t156;
-        let t186 = t147 * t147;
-        let t187 = t185 - t186;
-        let t198 = joint_accelerations[3] - t71;
-        let t199 = t198 - t161;
-        let t201 = t157 * t157;
-        let t202 = t201 - t185;
-        let t205 = t172 + t149;
-        let t216 = t186 - t201;
-        let t218 = t161 + t198;
-        let t221 = t158 - t180;
-        let t240 = 0.4 * t47;
-        let t241 = c4_arm * t240;
-        let t242 = t186 + t201;
-        let t244 = s4_arm * t240;
-        let t247 = 0.4 * t37;
-        let t252 = s4_arm * t135 + c4_arm * t116;
-        let t257 = c4_arm * t109;
-        let t259 = s4_arm * t109;
-        let t270 = t185 + t201;
-        let t277 = c4_arm * t135 - s4_arm * t116;
-        let t297 = t141 * c5_arm - t47 * s5_arm;
-        let t303 = c5_arm * t157 - s5_arm * t156;
-        let t305 = c5_arm * t149 + s5_arm * t198 + joint_velocities[4] * t303;
-        let t309 = t141 * s5_arm + t47 * c5_arm;
-        let t312 = c5_arm * t156 + s5_arm * t157;
-        let t313 = t147 + joint_velocities[4];
-        let t314 = t312 * t313;
-        let t315 = t309 * t314;
-        let t317 = t312 * t303;
-        let t322 = s5_arm * t166 - c3_arm * c5_arm;
-        let t323 = t322 * t314;
-        let t326 = c5_arm * t166 + c3_arm * s5_arm;
-        let t331 = 0.39 * s4_arm;
-        let t332 = s5_arm * t331;
-        let t333 = 2.5641025641025643 * t332;
-        let t334 = t333 * t314;
-        let t335 = c5_arm * t331;
-        let t336 = 2.5641025641025643 * t335;
-        let t341 = t156 * t313;
-        let t342 = t303 * t313;
-        let t343 = t342 + t305;
-        let t346 = t312 * t312;
-        let t347 = t303 * t303;
-        let t348 = t346 - t347;
-        let t354 = c5_arm * t198 - s5_arm * t149 - joint_velocities[4] * t312;
-        let t355 = t314 - t354;
-        let t373 = t180 + joint_accelerations[4];
-        let t374 = t317 + t373;
-        let t376 = t313 * t313;
-        let t377 = t376 - t346;
-        let t380 = t342 - t305;
-        let t389 = t336 * t374;
-        let t393 = s5_arm * t374;
-        let t396 = t347 - t376;
-        let t398 = t317 - t373;
-        let t401 = t314 + t354;
-        let t411 = t333 * t398;
-        let t415 = c5_arm * t398;
-        let t430 = t241 + 0.39 * t47;
-        let t433 = t247 + 0.39 * t141;
-        let t435 = c5_arm * t430 + s5_arm * t433;
-        let t436 = t347 + t376;
-        let t440 = s5_arm * t430 - c5_arm * t433;
-        let t446 = 0.39 * t270 - t252;
-        let t449 = t277 + 0.39 * t218;
-        let t452 = t124 + 0.39 * t173;
-        let t454 = s5_arm * t449 + c5_arm * t452;
-        let t459 = t257 + 0.39 * c3_arm;
-        let t462 = t127 + 0.39 * t166;
-        let t464 = s5_arm * t459 + c5_arm * t462;
-        let t468 = s5_arm * t462 - c5_arm * t459;
-        let t485 = 0.39 * c5_arm;
-        let t491 = t346 + t376;
-        let t499 = c5_arm * t449 - s5_arm * t452;
-        let t520 = 0.39 * s5_arm;
-        let t530 = t297 * c6_arm + t153 * s6_arm;
-        let t536 = c6_arm * t313 - s6_arm * t312;
-        let t538 = c6_arm * t305 + s6_arm * t373 + joint_velocities[5] * t536;
-        let t542 = t153 * c6_arm - t297 * s6_arm;
-        let t545 = c6_arm * t312 + s6_arm * t313;
-        let t546 = joint_velocities[5] - t303;
-        let t547 = t545 * t546;
-        let t548 = t542 * t547;
-        let t550 = t545 * t536;
-        let t555 = s6_arm * t326 - c6_arm * t164;
-        let t556 = t555 * t547;
-        let t559 = c6_arm * t326 + s6_arm * t164;
-        let t566 = c4_arm * s6_arm - c6_arm * t336;
-        let t570 = s6_arm * t336 + c4_arm * c6_arm;
-        let t571 = t570 * t547;
-        let t575 = s5_arm * c6_arm;
-        let t577 = s5_arm * s6_arm;
-        let t578 = t577 * t547;
-        let t582 = t312 * t546;
-        let t583 = t536 * t546;
-        let t584 = t583 + t538;
-        let t592 = c6_arm * t373 - s6_arm * t305 - joint_velocities[5] * t545;
-        let t593 = t547 - t592;
-        let t596 = t545 * t545;
-        let t597 = t536 * t536;
-        let t598 = t596 - t597;
-        let t619 = joint_accelerations[5] - t354;
-        let t620 = t550 + t619;
-        let t622 = t546 * t546;
-        let t623 = t622 - t596;
-        let t626 = t583 - t538;
-        let t647 = t597 - t622;
-        let t649 = t550 - t619;
-        let t652 = t547 + t592;
-        let t691 = c6_arm * t435 + s6_arm * t244;
-        let t692 = t597 + t622;
-        let t696 = s6_arm * t435 - c6_arm * t244;
-        let t704 = s6_arm * t499 + c6_arm * t446;
-        let t713 = c6_arm * t468 - s6_arm * t259;
-        let t717 = s6_arm * t468 + c6_arm * t259;
-        let t726 = c6_arm * t332;
-        let t728 = s6_arm * t332;
-        let t735 = c6_arm * t485;
-        let t737 = s6_arm * t485;
-        let t749 = c6_arm * t499 - s6_arm * t446;
-        let t753 = t596 + t622;
-        let t792 = t530 * c7_arm - t309 * s7_arm;
-        let t798 = s7_arm * t545 + c7_arm * t546;
-        let t800 = c7_arm * t538 - s7_arm * t619 - joint_velocities[6] * t798;
-        let t804 = t530 * s7_arm + t309 * c7_arm;
-        let t807 = c7_arm * t545 - s7_arm * t546;
-        let t808 = t536 + joint_velocities[6];
-        let t809 = t807 * t808;
-        let t810 = t804 * t809;
-        let t812 = t807 * t798;
-        let t817 = s7_arm * t322 - c7_arm * t559;
-        let t821 = s7_arm * t559 + c7_arm * t322;
-        let t822 = t821 * t809;
-        let t828 = c7_arm * t566 + s7_arm * t333;
-        let t832 = c7_arm * t333 - s7_arm * t566;
-        let t833 = t832 * t809;
-        let t839 = c7_arm * t575 + c5_arm * s7_arm;
-        let t843 = c5_arm * c7_arm - s7_arm * t575;
-        let t844 = t843 * t809;
-        let t848 = s6_arm * c7_arm;
-        let t850 = s6_arm * s7_arm;
-        let t851 = t850 * t809;
-        let t855 = t545 * t808;
-        let t856 = t798 * t808;
-        let t857 = t800 - t856;
-        let t860 = t807 * t807;
-        let t861 = t798 * t798;
-        let t862 = t860 - t861;
-        let t868 = s7_arm * t538 + c7_arm * t619 + joint_velocities[6] * t807;
-        let t869 = t809 + t868;
-        let t897 = t592 + joint_accelerations[6];
-        let t898 = t897 - t812;
-        let t900 = t808 * t808;
-        let t901 = t900 - t860;
-        let t904 = t856 + t800;
-        let t930 = t861 - t900;
-        let t932 = t812 + t897;
-        let t935 = t809 - t868;
-        let t983 = s7_arm * t691 + c7_arm * t440;
-        let t987 = s7_arm * t440 - c7_arm * t691;
-        let t988 = t861 + t900;
-        let t996 = s7_arm * t749 + c7_arm * t454;
-        let t1002 = c7_arm * t464 - s7_arm * t713;
-        let t1006 = c7_arm * t713 + s7_arm * t464;
-        let t1015 = t331 * t843;
-        let t1017 = t331 * t839;
-        let t1031 = c7_arm * t735 - s7_arm * t520;
-        let t1035 = s7_arm * t735 + c7_arm * t520;
-        let t1047 = t860 + t900;
-        let t1054 = c7_arm * t749 - s7_arm * t454;
+        let t111 = t32 + t84 * 0.4;
+        let t115 = t33 + 0.4 * t29;
+        let t117 = 0.4 * t7;
+        let t119 = s3_arm * t115 + c3_arm * t117;
+        let t128 = c3_arm * t115 - s3_arm * t117;
+        let t134 = t37 * c4_arm - c2_arm * s4_arm;
+        let t140 = s4_arm * t50 + c4_arm * t51;
+        let t142 = c4_arm * t45 - s4_arm * t80 - joint_velocities[3] * t140;
+        let t146 = t37 * s4_arm + c2_arm * c4_arm;
+        let t149 = c4_arm * t50 - s4_arm * t51;
+        let t150 = joint_velocities[3] - t43;
+        let t151 = t149 * t150;
+        let t152 = t146 * t151;
+        let t154 = t149 * t140;
+        let t157 = s3_arm * s4_arm;
+        let t158 = t157 * t151;
+        let t159 = s3_arm * c4_arm;
+        let t164 = t50 * t150;
+        let t165 = t140 * t150;
+        let t166 = t142 - t165;
+        let t173 = s4_arm * t45 + c4_arm * t80 + joint_velocities[3] * t149;
+        let t174 = t151 + t173;
+        let t178 = t149 * t149;
+        let t179 = t140 * t140;
+        let t180 = t178 - t179;
+        let t188 = s4_arm * t174;
+        let t189 = c4_arm * t166;
+        let t191 = joint_accelerations[3] - t71;
+        let t192 = t191 - t154;
+        let t194 = t150 * t150;
+        let t195 = t194 - t178;
+        let t198 = t165 + t142;
+        let t206 = s4_arm * t192;
+        let t209 = t179 - t194;
+        let t211 = t154 + t191;
+        let t214 = t151 - t173;
+        let t223 = c4_arm * t211;
+        let t236 = t32 - 0.4 * (t18 + t23);
+        let t238 = s4_arm * t128 + c4_arm * t236;
+        let t240 = 0.4 * c4_arm;
+        let t244 = t238 + 0.4 * t206 + t240 * (t179 + t194);
+        let t246 = t240 * t174;
+        let t249 = t119 + 0.4 * t188;
+        let t260 = t119 + 0.4 * t189;
+        let t262 = 0.4 * s4_arm;
+        let t263 = t262 * t166;
+        let t266 = t178 + t194;
+        let t272 = c4_arm * t128 - s4_arm * t236;
+        let t273 = t262 * t266 - 0.4 * t223 - t272;
+        let t287 = t134 * c5_arm - t47 * s5_arm;
+        let t293 = c5_arm * t150 - s5_arm * t149;
+        let t295 = c5_arm * t142 + s5_arm * t191 + joint_velocities[4] * t293;
+        let t299 = t134 * s5_arm + t47 * c5_arm;
+        let t302 = c5_arm * t149 + s5_arm * t150;
+        let t303 = t140 + joint_velocities[4];
+        let t304 = t302 * t303;
+        let t305 = t299 * t304;
+        let t307 = t302 * t293;
+        let t312 = s5_arm * t159 - c3_arm * c5_arm;
+        let t313 = t312 * t304;
+        let t316 = c5_arm * t159 + c3_arm * s5_arm;
+        let t321 = 0.39 * s4_arm;
+        let t322 = s5_arm * t321;
+        let t323 = 2.5641025641025643 * t322;
+        let t324 = t323 * t304;
+        let t325 = c5_arm * t321;
+        let t326 = 2.5641025641025643 * t325;
+        let t331 = t149 * t303;
+        let t332 = t293 * t303;
+        let t333 = t332 + t295;
+        let t336 = t302 * t302;
+        let t337 = t293 * t293;
+        let t338 = t336 - t337;
+        let t344 = c5_arm * t191 - s5_arm * t142 - joint_velocities[4] * t302;
+        let t345 = t304 - t344;
+        let t355 = t326 * t345;
+        let t356 = t323 * t333;
+        let t363 = t173 + joint_accelerations[4];
+        let t364 = t307 + t363;
+        let t366 = t303 * t303;
+        let t367 = t366 - t336;
+        let t370 = t332 - t295;
+        let t379 = t326 * t364;
+        let t383 = s5_arm * t364;
+        let t386 = t337 - t366;
+        let t388 = t307 - t363;
+        let t391 = t304 + t344;
+        let t401 = t323 * t388;
+        let t405 = c5_arm * t388;
+        let t419 = 1.0256410256410255 * t322;
+        let t421 = t240 + 0.39;
+        let t423 = t419 * t345 - t421 * t364;
+        let t426 = 0.39 * t266 - t238;
+        let t428 = t337 + t366;
+        let t431 = t426 + 0.4 * t355 - t421 * t428;
+        let t438 = t272 + 0.39 * t211;
+        let t441 = t119 + 0.39 * t166;
+        let t443 = s5_arm * t438 + c5_arm * t441;
+        let t444 = t419 * t428 - 0.4 * t379 - t443;
+        let t458 = 0.39 * c5_arm;
+        let t464 = t336 + t366;
+        let t467 = 0.4 * t356 + t421 * t464 - t426;
+        let t470 = 1.0256410256410255 * t325;
+        let t472 = t421 * t388 + t470 * t333;
+        let t480 = c5_arm * t438 - s5_arm * t441;
+        let t481 = t470 * t464 - 0.4 * t401 - t480;
+        let t495 = 0.39 * s5_arm;
+        let t505 = t287 * c6_arm + t146 * s6_arm;
+        let t511 = c6_arm * t303 - s6_arm * t302;
+        let t513 = c6_arm * t295 + s6_arm * t363 + joint_velocities[5] * t511;
+        let t517 = t146 * c6_arm - t287 * s6_arm;
+        let t520 = c6_arm * t302 + s6_arm * t303;
+        let t521 = joint_velocities[5] - t293;
+        let t522 = t520 * t521;
+        let t523 = t517 * t522;
+        let t525 = t520 * t511;
+        let t530 = s6_arm * t316 - c6_arm * t157;
+        let t531 = t530 * t522;
+        let t534 = c6_arm * t316 + s6_arm * t157;
+        let t540 = c6_arm * t326;
+        let t541 = c4_arm * s6_arm - t540;
+        let t543 = s6_arm * t326;
+        let t545 = t543 + c4_arm * c6_arm;
+        let t546 = t545 * t522;
+        let t550 = s5_arm * c6_arm;
+        let t552 = s5_arm * s6_arm;
+        let t553 = t552 * t522;
+        let t557 = t302 * t521;
+        let t558 = t511 * t521;
+        let t559 = t558 + t513;
+        let t567 = c6_arm * t363 - s6_arm * t295 - joint_velocities[5] * t520;
+        let t568 = t522 - t567;
+        let t571 = t520 * t520;
+        let t572 = t511 * t511;
+        let t573 = t571 - t572;
+        let t594 = joint_accelerations[5] - t344;
+        let t595 = t525 + t594;
+        let t597 = t521 * t521;
+        let t598 = t597 - t571;
+        let t601 = t558 - t513;
+        let t622 = t572 - t597;
+        let t624 = t525 - t594;
+        let t627 = t522 + t567;
+        let t666 = 0.4 * t543 + c6_arm * t421;
+        let t669 = t666 * t568 + t419 * t595;
+        let t671 = t572 + t597;
+        let t675 = s6_arm * t421 - 0.4 * t540;
+        let t678 = t419 * t671 - t675 * t568 - t443;
+        let t686 = s6_arm * t480 + c6_arm * t426;
+        let t687 = t675 * t595 + t666 * t671 - t686;
+        let t701 = c6_arm * t458;
+        let t703 = s6_arm * t458;
+        let t713 = t571 + t597;
+        let t716 = t443 + t666 * t559 - t419 * t713;
+        let t720 = t419 * t624 + t675 * t559;
+        let t725 = c6_arm * t480 - s6_arm * t426;
+        let t729 = t725 + t675 * t713 + t666 * t624;
+        let t757 = t505 * c7_arm - t299 * s7_arm;
+        let t763 = s7_arm * t520 + c7_arm * t521;
+        let t765 = c7_arm * t513 - s7_arm * t594 - joint_velocities[6] * t763;
+        let t769 = t505 * s7_arm + t299 * c7_arm;
+        let t772 = c7_arm * t520 - s7_arm * t521;
+        let t773 = t511 + joint_velocities[6];
+        let t774 = t772 * t773;
+        let t775 = t769 * t774;
+        let t777 = t772 * t763;
+        let t782 = s7_arm * t312 - c7_arm * t534;
+        let t786 = s7_arm * t534 + c7_arm * t312;
+        let t787 = t786 * t774;
+        let t792 = s7_arm * t323;
+        let t793 = c7_arm * t541 + t792;
+        let t795 = c7_arm * t323;
+        let t797 = t795 - s7_arm * t541;
+        let t798 = t797 * t774;
+        let t804 = c7_arm * t550 + c5_arm * s7_arm;
+        let t808 = c5_arm * c7_arm - s7_arm * t550;
+        let t809 = t808 * t774;
+        let t813 = s6_arm * c7_arm;
+        let t815 = s6_arm * s7_arm;
+        let t816 = t815 * t774;
+        let t820 = t520 * t773;
+        let t821 = t763 * t773;
+        let t822 = t765 - t821;
+        let t825 = t772 * t772;
+        let t826 = t763 * t763;
+        let t827 = t825 - t826;
+        let t833 = s7_arm * t513 + c7_arm * t594 + joint_velocities[6] * t772;
+        let t834 = t774 + t833;
+        let t862 = t567 + joint_accelerations[6];
+        let t863 = t862 - t777;
+        let t865 = t773 * t773;
+        let t866 = t865 - t825;
+        let t869 = t821 + t765;
+        let t895 = t826 - t865;
+        let t897 = t777 + t862;
+        let t900 = t774 - t833;
+        let t948 = 0.4 * t795 - s7_arm * t675;
+        let t951 = t948 * t834 - t666 * t863;
+        let t953 = t826 + t865;
+        let t957 = c7_arm * t675 + 0.4 * t792;
+        let t960 = t686 - (t666 * t953 + t957 * t834);
+        let t968 = s7_arm * t725 + c7_arm * t443;
+        let t969 = t957 * t863 + t948 * t953 - t968;
+        let t987 = c7_arm * t701 - s7_arm * t495;
+        let t991 = s7_arm * t701 + c7_arm * t495;
+        let t1002 = t825 + t865;
+        let t1005 = t948 * t822 + t666 * t1002 - t686;
+        let t1009 = t666 * t897 + t957 * t822;
+        let t1017 = c7_arm * t725 - s7_arm * t443;
+        let t1018 = t948 * t897 - t957 * t1002 - t1017;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
@@ -1133,139 +1133,114 @@ impl KukaLwr {
                 s2_arm * (t19 - t23) - c2_arm * t29, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 t37 * t45 - t53 + c2_arm * t55, c2_arm * t65 - (t37 * t72 + t47 * t60), t89, t100,
                 t53 - t37 * t59 + c2_arm * t80, -(0.4 * t89), -(0.4 * t100), 0.0, 0.0, 0.0, 0.0,
-                t141 * t149 - t159 - t47 * t161, -(t141 * t181 + t153 * t173 + t47 * t187),
-                t141 * t199 - t153 * t202 - t47 * t205, t141 * t216 - t153 * t218 - t47 * t221,
-                t159 - t141 * t172 - t47 * t198,
-                t241 * t242 + t244 * t199 - t247 * t181 + t47 * t252 - t153 * t124,
-                t241 * t218 - t244 * t270 - t247 * t173 + t47 * t277 - t141 * t124, 0.0, 0.0, 0.0,
-                0.0, t297 * t305 - t315 - t153 * t317, t153 * t348 - (t297 * t355 + t309 * t343),
-                t297 * t374 - t309 * t377 - t153 * t380, t297 * t396 + t309 * t398 + t153 * t401,
-                t297 * t342 + t315 + t153 * t373,
-                t435 * t436 + t440 * t374 - t244 * t355 - (t309 * t446 + t153 * t454),
-                -(t435 * t398 + t440 * t491 + t244 * t343 + t297 * t446 + t153 * t499), 0.0, 0.0,
-                0.0, 0.0, t530 * t538 + t548 - t309 * t550, t542 * t584 - t530 * t593 + t309 * t598,
-                t530 * t620 + t542 * t623 - t309 * t626, t530 * t647 - t542 * t649 + t309 * t652,
-                t530 * t583 - t548 + t309 * t619,
-                t691 * t692 + t696 * t620 - t440 * t593 - (t542 * t454 + t309 * t704),
-                t530 * t454 - t309 * t749 - (t691 * t649 + t696 * t753 + t440 * t584), 0.0, 0.0,
-                0.0, 0.0, t792 * t800 - t810 + t542 * t812,
-                t542 * t862 - (t792 * t869 + t804 * t857), t792 * t898 - t804 * t901 + t542 * t904,
-                t792 * t930 - t804 * t932 + t542 * t935, t810 - t792 * t856 + t542 * t897,
-                t983 * t898 - t987 * t988 + t696 * t869 - (t804 * t704 + t542 * t996),
-                t696 * t857 - (t987 * t932 + t983 * t1047)
-                    - (t792 * t704 + t542 * t1054),
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                t134 * t142 - t152 - t47 * t154, -(t134 * t174 + t146 * t166 + t47 * t180),
+                t134 * t192 - t146 * t195 - t47 * t198, t134 * t209 - t146 * t211 - t47 * t214,
+                t152 - t134 * t165 - t47 * t191, t47 * t244 - (t134 * t246 + t146 * t249),
+                -(t134 * t260 + t146 * t263 + t47 * t273), 0.0, 0.0, 0.0, 0.0,
+                t287 * t295 - t305 - t146 * t307, t146 * t338 - (t287 * t345 + t299 * t333),
+                t287 * t364 - t299 * t367 - t146 * t370, t287 * t386 + t299 * t388 + t146 * t391,
+                t287 * t332 + t305 + t146 * t363, t287 * t423 - t299 * t431 + t146 * t444,
+                t287 * t467 - t299 * t472 + t146 * t481, 0.0, 0.0, 0.0, 0.0,
+                t505 * t513 + t523 - t299 * t525, t517 * t559 - t505 * t568 + t299 * t573,
+                t505 * t595 + t517 * t598 - t299 * t601, t505 * t622 - t517 * t624 + t299 * t627,
+                t505 * t558 - t523 + t299 * t594, t505 * t669 + t517 * t678 + t299 * t687,
+                t505 * t716 - t517 * t720 - t299 * t729, 0.0, 0.0, 0.0, 0.0,
+                t757 * t765 - t775 + t517 * t777, t517 * t827 - (t757 * t834 + t769 * t822),
+                t757 * t863 - t769 * t866 + t517 * t869, t757 * t895 - t769 * t897 + t517 * t900,
+                t775 - t757 * t821 + t517 * t862, t757 * t951 - t769 * t960 + t517 * t969,
+                t757 * t1005 + t769 * t1009 + t517 * t1018, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t13, joint_accelerations[1], t32, -t33,
                 joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0,
                 -(t58 + s3_arm * t60), s3_arm * t72 - c3_arm * t60, -(t90 + c3_arm * t84),
-                -(s3_arm * t93 + t102), t58, t109 * (t64 + t83) + 0.4 * t90 + c3_arm * t116,
-                0.4 * t102 - t127 * (t63 + t83) - s3_arm * t116, 0.0, 0.0, 0.0, 0.0,
-                t165 - t149 * t166 - c3_arm * t161, t166 * t181 + t164 * t173 - c3_arm * t187,
-                t164 * t202 - t166 * t199 - c3_arm * t205,
-                t164 * t218 - t166 * t216 - c3_arm * t221, t166 * t172 - t165 - c3_arm * t198,
-                t257 * t242 + t259 * t199 + t127 * t181 + t124 * t164 + c3_arm * t252,
-                t257 * t218 - t259 * t270 + t127 * t173 + t124 * t166 + c3_arm * t277, 0.0, 0.0,
-                0.0, 0.0, t323 - t305 * t326 + t164 * t317, t326 * t355 + t322 * t343 - t164 * t348,
-                t322 * t377 - t326 * t374 + t164 * t380, -(t326 * t396 + t322 * t398 + t164 * t401),
-                -(t326 * t342 + t323 + t164 * t373),
-                t464 * t374 - t468 * t436 - t259 * t355 + t446 * t322 + t164 * t454,
-                t468 * t398 - t464 * t491 - t259 * t343 + t446 * t326 + t164 * t499, 0.0, 0.0, 0.0,
-                0.0, t556 - t538 * t559 + t322 * t550, t559 * t593 + t555 * t584 - t322 * t598,
-                t555 * t623 - t559 * t620 + t322 * t626, -(t559 * t647 + t555 * t649 + t322 * t652),
-                -(t559 * t583 + t556 + t322 * t619),
-                t322 * t704 - t454 * t555 - (t713 * t692 + t717 * t620 + t464 * t593),
-                t713 * t649 + t717 * t753 - t464 * t584 + t322 * t749 - t454 * t559, 0.0, 0.0, 0.0,
-                0.0, t800 * t817 + t822 + t555 * t812, t821 * t857 - t817 * t869 + t555 * t862,
-                t817 * t898 + t821 * t901 + t555 * t904, t817 * t930 + t821 * t932 + t555 * t935,
-                t555 * t897 - (t817 * t856 + t822),
-                t1002 * t898 - t1006 * t988 - t717 * t869 + t704 * t821 - t555 * t996,
-                -(t1006 * t932 + t1002 * t1047 + t717 * t857 + t704 * t817
-                    + t555 * t1054),
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                -(s3_arm * t93 + t102), t58, 0.4 * t90 + c3_arm * t111,
+                0.4 * t102 - s3_arm * (t111 + t65 * 0.4), 0.0, 0.0, 0.0, 0.0,
+                t158 - t142 * t159 - c3_arm * t154, t159 * t174 + t157 * t166 - c3_arm * t180,
+                t157 * t195 - t159 * t192 - c3_arm * t198,
+                t157 * t211 - t159 * t209 - c3_arm * t214, t159 * t165 - t158 - c3_arm * t191,
+                t159 * t246 + t157 * t249 + c3_arm * t244,
+                t159 * t260 + t157 * t263 - c3_arm * t273, 0.0, 0.0, 0.0, 0.0,
+                t313 - t295 * t316 + t157 * t307, t316 * t345 + t312 * t333 - t157 * t338,
+                t312 * t367 - t316 * t364 + t157 * t370, -(t316 * t386 + t312 * t388 + t157 * t391),
+                -(t316 * t332 + t313 + t157 * t363), t312 * t431 - t316 * t423 - t157 * t444,
+                t312 * t472 - t316 * t467 - t157 * t481, 0.0, 0.0, 0.0, 0.0,
+                t531 - t513 * t534 + t312 * t525, t534 * t568 + t530 * t559 - t312 * t573,
+                t530 * t598 - t534 * t595 + t312 * t601, -(t534 * t622 + t530 * t624 + t312 * t627),
+                -(t534 * t558 + t531 + t312 * t594), t530 * t678 - t534 * t669 - t312 * t687,
+                t312 * t729 - (t534 * t716 + t530 * t720), 0.0, 0.0, 0.0, 0.0,
+                t765 * t782 + t787 + t530 * t777, t786 * t822 - t782 * t834 + t530 * t827,
+                t782 * t863 + t786 * t866 + t530 * t869, t782 * t895 + t786 * t897 + t530 * t900,
+                t530 * t862 - (t782 * t821 + t787), t782 * t951 + t786 * t960 + t530 * t969,
+                t782 * t1005 - t786 * t1009 + t530 * t1018, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t65, t87,
-                t98, t80, -t124, -t135, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, -(t171 + s4_arm * t173),
-                s4_arm * t181 - c4_arm * t173, -(s4_arm * t199 + c4_arm * t202),
-                -(s4_arm * t216 + c4_arm * t218), t171, -(c4_arm * t124), s4_arm * t124, 0.0, 0.0,
-                0.0, 0.0, t334 - t305 * t336 - c4_arm * t317,
-                t336 * t355 + t333 * t343 + c4_arm * t348, t333 * t377 - t389 - c4_arm * t380,
-                c4_arm * t401 - (t336 * t396 + t411), c4_arm * t373 - (t336 * t342 + t334),
-                0.39 * t389 - t332 * t436 + t446 * t333 - c4_arm * t454,
-                0.39 * t411 - t335 * t491 + t446 * t336 - c4_arm * t499, 0.0, 0.0, 0.0, 0.0,
-                t538 * t566 + t571 + t333 * t550, t570 * t584 - t566 * t593 - t333 * t598,
-                t566 * t620 + t570 * t623 + t333 * t626, t566 * t647 - t570 * t649 - t333 * t652,
-                t566 * t583 - t571 - t333 * t619,
-                t333 * t704 - t454 * t570 - (t726 * t692 + t728 * t620 + t335 * t593),
-                t726 * t649 + t728 * t753 - t335 * t584 + t454 * t566 + t333 * t749, 0.0, 0.0, 0.0,
-                0.0, t800 * t828 + t833 + t570 * t812, t832 * t857 - t828 * t869 + t570 * t862,
-                t828 * t898 + t832 * t901 + t570 * t904, t828 * t930 + t832 * t932 + t570 * t935,
-                t570 * t897 - (t828 * t856 + t833),
-                t1015 * t898 - t1017 * t988 - t728 * t869 + t704 * t832 - t570 * t996,
-                -(t1017 * t932 + t1015 * t1047 + t728 * t857 + t704 * t828
-                    + t570 * t1054),
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                t98, t80, -t119, -t128, joint_accelerations[2], joint_velocities[2],
+                ::overact::math::sign(joint_velocities[2]), 1.0, -(t164 + s4_arm * t166),
+                t188 - t189, -(t206 + c4_arm * t195), -(s4_arm * t209 + t223), t164,
+                -(c4_arm * t119), s4_arm * t119, 0.0, 0.0, 0.0, 0.0,
+                t324 - t295 * t326 - c4_arm * t307, t355 + t356 + c4_arm * t338,
+                t323 * t367 - t379 - c4_arm * t370, c4_arm * t391 - (t326 * t386 + t401),
+                c4_arm * t363 - (t326 * t332 + t324), t323 * t431 - t326 * t423 + c4_arm * t444,
+                t323 * t472 - t326 * t467 + c4_arm * t481, 0.0, 0.0, 0.0, 0.0,
+                t513 * t541 + t546 + t323 * t525, t545 * t559 - t541 * t568 - t323 * t573,
+                t541 * t595 + t545 * t598 + t323 * t601, t541 * t622 - t545 * t624 - t323 * t627,
+                t541 * t558 - t546 - t323 * t594, t541 * t669 + t545 * t678 - t323 * t687,
+                t541 * t716 - t545 * t720 + t323 * t729, 0.0, 0.0, 0.0, 0.0,
+                t765 * t793 + t798 + t545 * t777, t797 * t822 - t793 * t834 + t545 * t827,
+                t793 * t863 + t797 * t866 + t545 * t869, t793 * t895 + t797 * t897 + t545 * t900,
+                t545 * t862 - (t793 * t821 + t798), t793 * t951 + t797 * t960 + t545 * t969,
+                t793 * t1005 - t797 * t1009 + t545 * t1018, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t161, t187, t205, t221, t198, -t252, -t277,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t154, t180, t198, t214, t191, -t238, -t272,
                 joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, t341 + s5_arm * t343,
-                c5_arm * t343 - s5_arm * t355, t393 + c5_arm * t377, s5_arm * t396 - t415, -t341,
-                c5_arm * t446 - (t485 * t436 + 0.39 * t393),
-                0.39 * t415 + t520 * t491 - s5_arm * t446, 0.0, 0.0, 0.0, 0.0,
-                t538 * t575 - t578 + c5_arm * t550, -(t575 * t593 + t577 * t584 + c5_arm * t598),
-                t575 * t620 - t577 * t623 + c5_arm * t626,
-                t575 * t647 + t577 * t649 - c5_arm * t652, t575 * t583 + t578 - c5_arm * t619,
-                t520 * t593 - (t735 * t692 + t737 * t620) + t454 * t577 + c5_arm * t704,
-                t735 * t649 + t737 * t753 + t520 * t584 + t454 * t575 + c5_arm * t749, 0.0, 0.0,
-                0.0, 0.0, t800 * t839 + t844 - t577 * t812, t843 * t857 - t839 * t869 - t577 * t862,
-                t839 * t898 + t843 * t901 - t577 * t904, t839 * t930 + t843 * t932 - t577 * t935,
-                -(t839 * t856 + t844 + t577 * t897),
-                t704 * t843 + t577 * t996 - (t1031 * t988 + t1035 * t898 + t737 * t869),
-                t1035 * t1047 - t1031 * t932 - t737 * t857 + t577 * t1054 - t704 * t839, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[3]), 1.0, t331 + s5_arm * t333,
+                c5_arm * t333 - s5_arm * t345, t383 + c5_arm * t367, s5_arm * t386 - t405, -t331,
+                c5_arm * t426 - (t458 * t428 + 0.39 * t383),
+                0.39 * t405 + t495 * t464 - s5_arm * t426, 0.0, 0.0, 0.0, 0.0,
+                t513 * t550 - t553 + c5_arm * t525, -(t550 * t568 + t552 * t559 + c5_arm * t573),
+                t550 * t595 - t552 * t598 + c5_arm * t601,
+                t550 * t622 + t552 * t624 - c5_arm * t627, t550 * t558 + t553 - c5_arm * t594,
+                t495 * t568 - (t701 * t671 + t703 * t595) + t443 * t552 + c5_arm * t686,
+                t701 * t624 + t703 * t713 + t495 * t559 + t443 * t550 + c5_arm * t725, 0.0, 0.0,
+                0.0, 0.0, t765 * t804 + t809 - t552 * t777, t808 * t822 - t804 * t834 - t552 * t827,
+                t804 * t863 + t808 * t866 - t552 * t869, t804 * t895 + t808 * t897 - t552 * t900,
+                -(t804 * t821 + t809 + t552 * t862),
+                t686 * t808 + t552 * t968 - (t987 * t953 + t991 * t863 + t703 * t834),
+                t991 * t1002 - t987 * t897 - t703 * t822 + t552 * t1017 - t686 * t804, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, -t317, t348, -t380, t401, t373, -t454, -t499, joint_accelerations[4],
+                0.0, 0.0, -t307, t338, -t370, t391, t363, -t443, -t480, joint_accelerations[4],
                 joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                t582 + s6_arm * t584, c6_arm * t584 - s6_arm * t593, s6_arm * t620 + c6_arm * t623,
-                s6_arm * t647 - c6_arm * t649, -t582, -(c6_arm * t454), s6_arm * t454, 0.0, 0.0,
-                0.0, 0.0, t800 * t848 - t851 + c6_arm * t812,
-                c6_arm * t862 - (t848 * t869 + t850 * t857),
-                t848 * t898 - t850 * t901 + c6_arm * t904,
-                t848 * t930 - t850 * t932 + c6_arm * t935, t851 - t848 * t856 + c6_arm * t897,
-                -(t704 * t850 + c6_arm * t996), -(t704 * t848 + c6_arm * t1054), 0.0, 0.0, 0.0, 0.0,
+                t557 + s6_arm * t559, c6_arm * t559 - s6_arm * t568, s6_arm * t595 + c6_arm * t598,
+                s6_arm * t622 - c6_arm * t624, -t557, -(c6_arm * t443), s6_arm * t443, 0.0, 0.0,
+                0.0, 0.0, t765 * t813 - t816 + c6_arm * t777,
+                c6_arm * t827 - (t813 * t834 + t815 * t822),
+                t813 * t863 - t815 * t866 + c6_arm * t869,
+                t813 * t895 - t815 * t897 + c6_arm * t900, t816 - t813 * t821 + c6_arm * t862,
+                -(t686 * t815 + c6_arm * t968), -(t686 * t813 + c6_arm * t1017), 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t550, t598, -t626,
-                t652, t619, -t704, -t749, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -(t855 + s7_arm * t857),
-                s7_arm * t869 - c7_arm * t857, -(s7_arm * t898 + c7_arm * t901),
-                -(s7_arm * t930 + c7_arm * t932), t855, -(c7_arm * t704), s7_arm * t704, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t525, t573, -t601,
+                t627, t594, -t686, -t725, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -(t820 + s7_arm * t822),
+                s7_arm * t834 - c7_arm * t822, -(s7_arm * t863 + c7_arm * t866),
+                -(s7_arm * t895 + c7_arm * t897), t820, -(c7_arm * t686), s7_arm * t686, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t812, t862, t904, t935, t897, -t996, -t1054,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t777, t827, t869, t900, t862, -t968, -t1017,
                 joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],
@@ -1296,7 +1271,7 @@ impl KukaLwr {
     ///
     /// Output: 7.
     ///
-    /// 982 operations (451 additions, 531 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 994 intermediates.
+    /// 919 operations (428 additions, 491 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 931 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
         joints: &[f64; 7],
@@ -1356,305 +1331,294 @@ impl KukaLwr {
         let t102 = t100 + 0.4 * t46;
         let t104 = 0.4 * t37;
         let t106 = s3_arm * t102 + c3_arm * t104;
-        let t108 = t91 - parameters[22] * t84 + parameters[24] * t97
-            + parameters[25] * t106;
-        let t110 = s2_arm * s3_arm;
-        let t115 = t68 * t68;
-        let t121 = t80 + t79;
-        let t123 = parameters[17] * t70 + parameters[18] * (t64 - t84)
-            + parameters[19] * (t88 - t115) - parameters[20] * t75
-            + parameters[21] * t121;
-        let t130 = c3_arm * t102 - s3_arm * t104;
-        let t132 = t123 - parameters[22] * t70 - parameters[23] * t97
-            + parameters[25] * t130;
-        let t139 = t84 + t64;
+        let t110 = t68 * t68;
+        let t111 = t110 + t88;
+        let t114 = t84 + t64;
+        let t120 = t91 - parameters[22] * t84 + parameters[24] * t97
+            + parameters[25] * t106
+            - 0.4
+                * (parameters[23] * t81 - parameters[24] * t111 - parameters[25] * t114
+                    - parameters[26] * t106);
+        let t122 = s2_arm * s3_arm;
+        let t132 = t80 + t79;
+        let t134 = parameters[17] * t70 + parameters[18] * (t64 - t84)
+            + parameters[19] * (t88 - t110) - parameters[20] * t75
+            + parameters[21] * t132;
+        let t141 = c3_arm * t102 - s3_arm * t104;
         let t144 = t70 - t75;
-        let t146 = parameters[17] * t80 + parameters[18] * (t115 - t87)
-            + parameters[19] * t139 - parameters[20] * t80 + parameters[21] * t144;
-        let t152 = t146 + parameters[22] * t79 - parameters[23] * t106
-            - parameters[24] * t130;
-        let t155 = 0.4 * t110;
-        let t163 = parameters[25] * t144
-            - (parameters[23] * (t87 + t88) + parameters[24] * t121)
-            + parameters[26] * t130;
-        let t165 = 0.4 * t56;
-        let t167 = t115 + t88;
-        let t173 = parameters[23] * t81 - parameters[24] * t167 - parameters[25] * t139
-            - parameters[26] * t106;
-        let t177 = t53 + t56 * t108 - t110 * t132 + c2_arm * t152
-            - (t155 * t163 + t165 * t173);
-        let t180 = s4_arm * t155;
-        let t181 = joint_accelerations[3] - t75;
-        let t184 = c4_arm * t68 - s4_arm * t69;
-        let t187 = s4_arm * t68 + c4_arm * t69;
-        let t188 = t184 * t187;
-        let t189 = t181 - t188;
-        let t191 = t184 * t184;
-        let t192 = joint_velocities[3] - t62;
-        let t193 = t192 * t192;
-        let t194 = t191 + t193;
-        let t197 = t187 * t192;
-        let t202 = c4_arm * t64 - s4_arm * t79 - joint_velocities[3] * t187;
-        let t203 = t197 + t202;
-        let t208 = s4_arm * t130 + c4_arm * t97;
-        let t210 = parameters[37] * t189 - parameters[38] * t194 - parameters[39] * t203
-            - parameters[40] * t208;
-        let t212 = c4_arm * t155;
-        let t213 = t184 * t192;
-        let t218 = s4_arm * t64 + c4_arm * t79 + joint_velocities[3] * t184;
-        let t219 = t213 - t218;
-        let t221 = t187 * t187;
-        let t224 = t188 + t181;
-        let t230 = c4_arm * t130 - s4_arm * t97;
-        let t232 = parameters[39] * t219
-            - (parameters[37] * (t221 + t193) + parameters[38] * t224)
-            + parameters[40] * t230;
-        let t235 = t213 + t218;
-        let t237 = t202 - t197;
-        let t243 = parameters[37] * t235 + parameters[38] * t237 - parameters[39] * t167
+        let t154 = t134 - parameters[22] * t70 - parameters[23] * t97
+            + parameters[25] * t141
+            + 0.4
+                * (parameters[25] * t144
+                    - (parameters[23] * (t87 + t88) + parameters[24] * t132)
+                    + parameters[26] * t141);
+        let t166 = parameters[17] * t80 + parameters[18] * (t110 - t87)
+            + parameters[19] * t114 - parameters[20] * t80 + parameters[21] * t144;
+        let t172 = t166 + parameters[22] * t79 - parameters[23] * t106
+            - parameters[24] * t141;
+        let t180 = t56 * c4_arm - c2_arm * s4_arm;
+        let t186 = s4_arm * t68 + c4_arm * t69;
+        let t188 = c4_arm * t64 - s4_arm * t79 - joint_velocities[3] * t186;
+        let t192 = c4_arm * t68 - s4_arm * t69;
+        let t193 = joint_velocities[3] - t62;
+        let t194 = t192 * t193;
+        let t199 = s4_arm * t64 + c4_arm * t79 + joint_velocities[3] * t192;
+        let t200 = t194 + t199;
+        let t203 = joint_accelerations[3] - t75;
+        let t204 = t192 * t186;
+        let t205 = t203 - t204;
+        let t208 = t186 * t193;
+        let t211 = t186 * t186;
+        let t212 = t193 * t193;
+        let t215 = parameters[31] * t188 - parameters[32] * t200 + parameters[33] * t205
+            + parameters[34] * t208 + parameters[35] * (t211 - t212);
+        let t222 = s4_arm * t141 + c4_arm * t97;
+        let t225 = 0.4 * c4_arm;
+        let t227 = t188 - t208;
+        let t233 = parameters[37] * t200 + parameters[38] * t227 - parameters[39] * t111
             - parameters[40] * t106;
-        let t248 = t56 * c4_arm - c2_arm * s4_arm;
-        let t258 = parameters[31] * t202 - parameters[32] * t235 + parameters[33] * t189
-            + parameters[34] * t197 + parameters[35] * (t221 - t193);
-        let t264 = t258 - parameters[36] * t197 - parameters[38] * t106
-            + parameters[39] * t208;
-        let t268 = t56 * s4_arm + c2_arm * c4_arm;
-        let t278 = parameters[31] * t213 + parameters[32] * t237
-            + parameters[33] * (t193 - t191) - parameters[34] * t218
-            + parameters[35] * t224;
-        let t284 = t278 - parameters[36] * t213 + parameters[37] * t106
-            + parameters[39] * t230;
-        let t296 = parameters[31] * t188 + parameters[32] * (t191 - t221)
-            + parameters[33] * t203 - parameters[34] * t188 + parameters[35] * t219;
-        let t302 = t296 + parameters[36] * t181 - parameters[37] * t208
-            - parameters[38] * t230;
-        let t305 = t180 * t210 - t212 * t232 - t165 * t243 + t248 * t264 - t268 * t284
-            - t110 * t302;
-        let t310 = t212 + 0.39 * t110;
-        let t313 = t165 + 0.39 * t248;
-        let t315 = s5_arm * t310 - c5_arm * t313;
-        let t318 = c5_arm * t184 + s5_arm * t192;
-        let t321 = c5_arm * t192 - s5_arm * t184;
-        let t322 = t318 * t321;
-        let t323 = t218 + joint_accelerations[4];
-        let t324 = t322 + t323;
-        let t326 = t318 * t318;
-        let t327 = t187 + joint_velocities[4];
-        let t328 = t327 * t327;
-        let t329 = t326 + t328;
-        let t332 = t321 * t327;
-        let t337 = c5_arm * t202 + s5_arm * t181 + joint_velocities[4] * t321;
-        let t338 = t332 - t337;
-        let t342 = t230 + 0.39 * t224;
-        let t345 = t106 + 0.39 * t237;
-        let t347 = s5_arm * t342 + c5_arm * t345;
-        let t349 = parameters[51] * t324 - parameters[52] * t329 + parameters[53] * t338
-            - parameters[54] * t347;
-        let t353 = c5_arm * t310 + s5_arm * t313;
-        let t354 = t322 - t323;
-        let t356 = t321 * t321;
-        let t360 = t318 * t327;
-        let t365 = c5_arm * t181 - s5_arm * t202 - joint_velocities[4] * t318;
-        let t366 = t360 + t365;
-        let t371 = c5_arm * t342 - s5_arm * t345;
-        let t373 = parameters[52] * t354 - parameters[51] * (t356 + t328)
-            + parameters[53] * t366 + parameters[54] * t371;
-        let t376 = t360 - t365;
-        let t378 = t332 + t337;
-        let t384 = 0.39 * t194 - t208;
-        let t386 = parameters[51] * t376 + parameters[52] * t378 - parameters[53] * t194
-            - parameters[54] * t384;
-        let t391 = t248 * c5_arm - t110 * s5_arm;
-        let t401 = parameters[45] * t337 - parameters[46] * t376 + parameters[47] * t324
-            - parameters[48] * t332 + parameters[49] * (t356 - t328);
-        let t407 = t401 + parameters[50] * t332 - parameters[52] * t384
-            + parameters[53] * t347;
-        let t411 = t248 * s5_arm + t110 * c5_arm;
-        let t421 = parameters[45] * t360 + parameters[46] * t378
-            + parameters[47] * (t328 - t326) + parameters[48] * t365
-            - parameters[49] * t354;
-        let t427 = t421 - parameters[50] * t360 + parameters[51] * t384
-            + parameters[53] * t371;
-        let t439 = parameters[46] * (t326 - t356) - parameters[45] * t322
-            - parameters[47] * t338 + parameters[48] * t322 + parameters[49] * t366;
-        let t445 = t439 + parameters[50] * t323 - parameters[51] * t347
-            - parameters[52] * t371;
-        let t448 = t315 * t349 - t353 * t373 - t180 * t386 + t391 * t407 - t411 * t427
-            + t268 * t445;
-        let t454 = s6_arm * t353 - c6_arm * t180;
-        let t457 = c6_arm * t318 + s6_arm * t327;
-        let t460 = c6_arm * t327 - s6_arm * t318;
-        let t461 = t457 * t460;
-        let t462 = joint_accelerations[5] - t365;
-        let t463 = t461 + t462;
-        let t465 = t457 * t457;
-        let t466 = joint_velocities[5] - t321;
-        let t467 = t466 * t466;
-        let t468 = t465 + t467;
-        let t471 = t460 * t466;
-        let t476 = c6_arm * t337 + s6_arm * t323 + joint_velocities[5] * t460;
-        let t477 = t471 - t476;
-        let t482 = s6_arm * t371 + c6_arm * t384;
-        let t484 = parameters[65] * t463 - parameters[66] * t468 + parameters[67] * t477
-            - parameters[68] * t482;
-        let t488 = c6_arm * t353 + s6_arm * t180;
-        let t489 = t461 - t462;
-        let t491 = t460 * t460;
-        let t495 = t457 * t466;
-        let t500 = c6_arm * t323 - s6_arm * t337 - joint_velocities[5] * t457;
-        let t501 = t495 + t500;
-        let t506 = c6_arm * t371 - s6_arm * t384;
-        let t508 = parameters[66] * t489 - parameters[65] * (t491 + t467)
-            + parameters[67] * t501 + parameters[68] * t506;
-        let t511 = t495 - t500;
-        let t513 = t471 + t476;
-        let t519 = parameters[65] * t511 + parameters[66] * t513 - parameters[67] * t329
-            + parameters[68] * t347;
-        let t524 = t391 * c6_arm + t268 * s6_arm;
-        let t534 = parameters[59] * t476 - parameters[60] * t511 + parameters[61] * t463
-            - parameters[62] * t471 + parameters[63] * (t491 - t467);
-        let t540 = t534 + parameters[64] * t471 + parameters[66] * t347
-            + parameters[67] * t482;
-        let t544 = t268 * c6_arm - t391 * s6_arm;
-        let t554 = parameters[59] * t495 + parameters[60] * t513
-            + parameters[61] * (t467 - t465) + parameters[62] * t500
-            - parameters[63] * t489;
-        let t560 = t554 - parameters[64] * t495 - parameters[65] * t347
-            + parameters[67] * t506;
-        let t572 = parameters[60] * (t465 - t491) - parameters[59] * t461
-            - parameters[61] * t477 + parameters[62] * t461 + parameters[63] * t501;
-        let t578 = t572 + parameters[64] * t462 - parameters[65] * t482
-            - parameters[66] * t506;
-        let t581 = t454 * t484 - t488 * t508 - t315 * t519 + t524 * t540 + t544 * t560
-            + t411 * t578;
-        let t590 = c7_arm * t457 - s7_arm * t466;
-        let t591 = t460 + joint_velocities[6];
-        let t592 = t590 * t591;
-        let t597 = s7_arm * t476 + c7_arm * t462 + joint_velocities[6] * t590;
-        let t598 = t592 - t597;
-        let t602 = s7_arm * t457 + c7_arm * t466;
-        let t603 = t602 * t602;
-        let t604 = t591 * t591;
-        let t607 = t590 * t602;
-        let t608 = t500 + joint_accelerations[6];
-        let t609 = t607 + t608;
-        let t615 = c7_arm * t506 - s7_arm * t347;
-        let t617 = parameters[81] * t598
-            - (parameters[79] * (t603 + t604) + parameters[80] * t609)
-            + parameters[82] * t615;
-        let t622 = t608 - t607;
-        let t624 = t590 * t590;
-        let t628 = t602 * t591;
-        let t633 = c7_arm * t476 - s7_arm * t462 - joint_velocities[6] * t602;
-        let t634 = t628 + t633;
-        let t639 = s7_arm * t506 + c7_arm * t347;
-        let t641 = parameters[79] * t622 - parameters[80] * (t624 + t604)
-            - parameters[81] * t634 - parameters[82] * t639;
-        let t644 = t592 + t597;
-        let t646 = t633 - t628;
-        let t652 = parameters[79] * t644 + parameters[80] * t646 - parameters[81] * t468
-            - parameters[82] * t482;
-        let t654 = (s7_arm * t315 - c7_arm * t488) * t617
-            + (s7_arm * t488 + c7_arm * t315) * t641 + t454 * t652;
-        let t667 = parameters[73] * t633 - parameters[74] * t644 + parameters[75] * t622
-            + parameters[76] * t628 + parameters[77] * (t603 - t604);
-        let t673 = t667 - parameters[78] * t628 - parameters[80] * t482
-            + parameters[81] * t639;
-        let t687 = parameters[73] * t592 + parameters[74] * t646
-            + parameters[75] * (t604 - t624) - parameters[76] * t597
-            + parameters[77] * t609;
-        let t693 = t687 - parameters[78] * t592 + parameters[79] * t482
-            + parameters[81] * t615;
-        let t705 = parameters[73] * t607 + parameters[74] * (t624 - t603)
-            + parameters[75] * t634 - parameters[76] * t607 + parameters[77] * t598;
-        let t711 = t705 + parameters[78] * t608 - parameters[79] * t639
-            - parameters[80] * t615;
-        let t713 = (t524 * c7_arm - t411 * s7_arm) * t673
-            - (t524 * s7_arm + t411 * c7_arm) * t693 + t544 * t711;
-        let t725 = parameters[6] * (t40 - t28) - parameters[5] * t22
+        let t235 = t215 - parameters[36] * t208 - parameters[38] * t106
+            + parameters[39] * t222 - t225 * t233;
+        let t239 = t56 * s4_arm + c2_arm * c4_arm;
+        let t243 = t192 * t192;
+        let t249 = t204 + t203;
+        let t251 = parameters[31] * t194 + parameters[32] * t227
+            + parameters[33] * (t212 - t243) - parameters[34] * t199
+            + parameters[35] * t249;
+        let t258 = c4_arm * t141 - s4_arm * t97;
+        let t261 = 0.4 * s4_arm;
+        let t263 = t251 - parameters[36] * t194 + parameters[37] * t106
+            + parameters[39] * t258 + t261 * t233;
+        let t270 = t208 + t188;
+        let t275 = t194 - t199;
+        let t277 = parameters[31] * t204 + parameters[32] * (t243 - t211)
+            + parameters[33] * t270 - parameters[34] * t204 + parameters[35] * t275;
+        let t283 = t277 + parameters[36] * t203 - parameters[37] * t222
+            - parameters[38] * t258;
+        let t294 = t243 + t212;
+        let t302 = t225
+            * (parameters[39] * t275
+                - (parameters[37] * (t211 + t212) + parameters[38] * t249)
+                + parameters[40] * t258)
+            - t261
+                * (parameters[37] * t205 - parameters[38] * t294 - parameters[39] * t270
+                    - parameters[40] * t222);
+        let t303 = t283 + t302;
+        let t306 = t53 + t56 * t120 - t122 * t154 + c2_arm * t172 + t180 * t235
+            - t239 * t263 - t122 * t303;
+        let t311 = t180 * c5_arm - t122 * s5_arm;
+        let t317 = c5_arm * t193 - s5_arm * t192;
+        let t319 = c5_arm * t188 + s5_arm * t203 + joint_velocities[4] * t317;
+        let t323 = c5_arm * t192 + s5_arm * t193;
+        let t324 = t186 + joint_velocities[4];
+        let t325 = t323 * t324;
+        let t330 = c5_arm * t203 - s5_arm * t188 - joint_velocities[4] * t323;
+        let t331 = t325 - t330;
+        let t334 = t323 * t317;
+        let t335 = t199 + joint_accelerations[4];
+        let t336 = t334 + t335;
+        let t339 = t317 * t324;
+        let t342 = t317 * t317;
+        let t343 = t324 * t324;
+        let t346 = parameters[45] * t319 - parameters[46] * t331 + parameters[47] * t336
+            - parameters[48] * t339 + parameters[49] * (t342 - t343);
+        let t350 = 0.39 * t294 - t222;
+        let t354 = t258 + 0.39 * t249;
+        let t357 = t106 + 0.39 * t227;
+        let t359 = s5_arm * t354 + c5_arm * t357;
+        let t361 = t346 + parameters[50] * t339 - parameters[52] * t350
+            + parameters[53] * t359;
+        let t362 = 0.39 * s4_arm;
+        let t363 = s5_arm * t362;
+        let t364 = 1.0256410256410255 * t363;
+        let t366 = t339 + t319;
+        let t372 = parameters[51] * t331 + parameters[52] * t366 - parameters[53] * t294
+            - parameters[54] * t350;
+        let t374 = t225 + 0.39;
+        let t376 = t323 * t323;
+        let t377 = t376 + t343;
+        let t380 = t339 - t319;
+        let t384 = parameters[51] * t336 - parameters[52] * t377 + parameters[53] * t380
+            - parameters[54] * t359;
+        let t387 = t361 + t364 * t372 - t374 * t384;
+        let t391 = t180 * s5_arm + t122 * c5_arm;
+        let t400 = t334 - t335;
+        let t402 = parameters[45] * t325 + parameters[46] * t366
+            + parameters[47] * (t343 - t376) + parameters[48] * t330
+            - parameters[49] * t400;
+        let t409 = c5_arm * t354 - s5_arm * t357;
+        let t411 = t402 - parameters[50] * t325 + parameters[51] * t350
+            + parameters[53] * t409;
+        let t416 = t325 + t330;
+        let t420 = parameters[52] * t400 - parameters[51] * (t342 + t343)
+            + parameters[53] * t416 + parameters[54] * t409;
+        let t422 = c5_arm * t362;
+        let t423 = 1.0256410256410255 * t422;
+        let t426 = t411 + t374 * t420 + t423 * t372;
+        let t438 = parameters[46] * (t376 - t342) - parameters[45] * t334
+            - parameters[47] * t380 + parameters[48] * t334 + parameters[49] * t416;
+        let t444 = t438 + parameters[50] * t335 - parameters[51] * t359
+            - parameters[52] * t409;
+        let t448 = t444 - (t423 * t384 + t364 * t420);
+        let t456 = t311 * c6_arm + t239 * s6_arm;
+        let t462 = c6_arm * t324 - s6_arm * t323;
+        let t464 = c6_arm * t319 + s6_arm * t335 + joint_velocities[5] * t462;
+        let t468 = c6_arm * t323 + s6_arm * t324;
+        let t469 = joint_velocities[5] - t317;
+        let t470 = t468 * t469;
+        let t475 = c6_arm * t335 - s6_arm * t319 - joint_velocities[5] * t468;
+        let t476 = t470 - t475;
+        let t479 = t468 * t462;
+        let t480 = joint_accelerations[5] - t330;
+        let t481 = t479 + t480;
+        let t484 = t462 * t469;
+        let t487 = t462 * t462;
+        let t488 = t469 * t469;
+        let t491 = parameters[59] * t464 - parameters[60] * t476 + parameters[61] * t481
+            - parameters[62] * t484 + parameters[63] * (t487 - t488);
+        let t498 = s6_arm * t409 + c6_arm * t350;
+        let t500 = t491 + parameters[64] * t484 + parameters[66] * t359
+            + parameters[67] * t498;
+        let t501 = 2.5641025641025643 * t422;
+        let t502 = s6_arm * t501;
+        let t505 = 0.4 * t502 + c6_arm * t374;
+        let t507 = t484 + t464;
+        let t513 = parameters[65] * t476 + parameters[66] * t507 - parameters[67] * t377
+            + parameters[68] * t359;
+        let t516 = t468 * t468;
+        let t517 = t516 + t488;
+        let t520 = t484 - t464;
+        let t524 = parameters[65] * t481 - parameters[66] * t517 + parameters[67] * t520
+            - parameters[68] * t498;
+        let t527 = t500 + t505 * t513 + t364 * t524;
+        let t531 = t239 * c6_arm - t311 * s6_arm;
+        let t540 = t479 - t480;
+        let t542 = parameters[59] * t470 + parameters[60] * t507
+            + parameters[61] * (t488 - t516) + parameters[62] * t475
+            - parameters[63] * t540;
+        let t549 = c6_arm * t409 - s6_arm * t350;
+        let t551 = t542 - parameters[64] * t470 - parameters[65] * t359
+            + parameters[67] * t549;
+        let t556 = t470 + t475;
+        let t560 = parameters[66] * t540 - parameters[65] * (t487 + t488)
+            + parameters[67] * t556 + parameters[68] * t549;
+        let t563 = c6_arm * t501;
+        let t565 = s6_arm * t374 - 0.4 * t563;
+        let t568 = t551 - (t364 * t560 + t565 * t513);
+        let t580 = parameters[60] * (t516 - t487) - parameters[59] * t479
+            - parameters[61] * t520 + parameters[62] * t479 + parameters[63] * t556;
+        let t586 = t580 + parameters[64] * t480 - parameters[65] * t498
+            - parameters[66] * t549;
+        let t590 = t586 + t565 * t524 - t505 * t560;
+        let t593 = t306 + t311 * t387 - t391 * t426 + t239 * t448 + t456 * t527
+            + t531 * t568 + t391 * t590;
+        let t604 = s7_arm * t468 + c7_arm * t469;
+        let t606 = c7_arm * t464 - s7_arm * t480 - joint_velocities[6] * t604;
+        let t610 = c7_arm * t468 - s7_arm * t469;
+        let t611 = t462 + joint_velocities[6];
+        let t612 = t610 * t611;
+        let t617 = s7_arm * t464 + c7_arm * t480 + joint_velocities[6] * t610;
+        let t618 = t612 + t617;
+        let t621 = t475 + joint_accelerations[6];
+        let t622 = t610 * t604;
+        let t623 = t621 - t622;
+        let t626 = t604 * t611;
+        let t629 = t604 * t604;
+        let t630 = t611 * t611;
+        let t633 = parameters[73] * t606 - parameters[74] * t618 + parameters[75] * t623
+            + parameters[76] * t626 + parameters[77] * (t629 - t630);
+        let t640 = s7_arm * t549 + c7_arm * t359;
+        let t642 = t633 - parameters[78] * t626 - parameters[80] * t498
+            + parameters[81] * t640;
+        let t643 = 2.5641025641025643 * t363;
+        let t644 = c7_arm * t643;
+        let t647 = 0.4 * t644 - s7_arm * t565;
+        let t649 = t606 - t626;
+        let t655 = parameters[79] * t618 + parameters[80] * t649 - parameters[81] * t517
+            - parameters[82] * t498;
+        let t658 = t610 * t610;
+        let t662 = t626 + t606;
+        let t666 = parameters[79] * t623 - parameters[80] * (t658 + t630)
+            - parameters[81] * t662 - parameters[82] * t640;
+        let t669 = t642 + t647 * t655 - t505 * t666;
+        let t682 = t622 + t621;
+        let t684 = parameters[73] * t612 + parameters[74] * t649
+            + parameters[75] * (t630 - t658) - parameters[76] * t617
+            + parameters[77] * t682;
+        let t691 = c7_arm * t549 - s7_arm * t359;
+        let t693 = t684 - parameters[78] * t612 + parameters[79] * t498
+            + parameters[81] * t691;
+        let t694 = t612 - t617;
+        let t702 = parameters[81] * t694
+            - (parameters[79] * (t629 + t630) + parameters[80] * t682)
+            + parameters[82] * t691;
+        let t705 = s7_arm * t643;
+        let t707 = c7_arm * t565 + 0.4 * t705;
+        let t710 = t693 + t505 * t702 - t707 * t655;
+        let t722 = parameters[73] * t622 + parameters[74] * (t658 - t629)
+            + parameters[75] * t662 - parameters[76] * t622 + parameters[77] * t694;
+        let t728 = t722 + parameters[78] * t621 - parameters[79] * t640
+            - parameters[80] * t691;
+        let t732 = t728 + t707 * t666 - t647 * t702;
+        let t734 = (t456 * c7_arm - t391 * s7_arm) * t669
+            - (t456 * s7_arm + t391 * c7_arm) * t710 + t531 * t732;
+        let t745 = parameters[6] * (t40 - t28) - parameters[5] * t22
             + parameters[7] * t10 + parameters[8] * t22 + parameters[9] * t17;
-        let t738 = t725 + joint_accelerations[1] * parameters[10] + parameters[11] * t94
+        let t758 = t745 + joint_accelerations[1] * parameters[10] + parameters[11] * t94
             - parameters[12] * t100 + joint_accelerations[1] * parameters[13]
             + joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
             + parameters[16];
-        let t739 = 0.4 * s3_arm;
-        let t741 = 0.4 * c3_arm;
-        let t749 = s4_arm * t741;
-        let t751 = c4_arm * t741;
-        let t756 = s3_arm * s4_arm;
-        let t758 = s3_arm * c4_arm;
-        let t763 = t749 * t210 - t751 * t232 + t739 * t243 + t756 * t284 - t758 * t264
-            - c3_arm * t302;
-        let t766 = t739 + 0.39 * t758;
-        let t769 = t751 + 0.39 * c3_arm;
-        let t771 = s5_arm * t766 - c5_arm * t769;
-        let t775 = s5_arm * t769 + c5_arm * t766;
-        let t782 = s5_arm * t758 - c3_arm * c5_arm;
-        let t786 = c5_arm * t758 + c3_arm * s5_arm;
-        let t791 = t771 * t373 + t775 * t349 - t749 * t386 + t782 * t427 - t786 * t407
-            - t756 * t445;
-        let t792 = t738 + t739 * t173 - t741 * t163 - (s3_arm * t108 + c3_arm * t132)
-            + t763 + t791;
-        let t795 = c6_arm * t771 - s6_arm * t749;
-        let t799 = s6_arm * t771 + c6_arm * t749;
-        let t806 = s6_arm * t786 - c6_arm * t756;
-        let t810 = c6_arm * t786 + s6_arm * t756;
-        let t815 = t795 * t508 - t799 * t484 - t775 * t519 + t806 * t560 - t810 * t540
-            - t782 * t578;
-        let t827 = (c7_arm * t795 + s7_arm * t775) * t617
-            + (c7_arm * t775 - s7_arm * t795) * t641 - t799 * t652;
-        let t838 = (s7_arm * t782 - c7_arm * t810) * t673
-            + (s7_arm * t810 + c7_arm * t782) * t693 + t806 * t711;
-        let t851 = t152 + joint_accelerations[2] * parameters[27]
+        let t763 = s3_arm * s4_arm;
+        let t765 = s3_arm * c4_arm;
+        let t770 = t758 - (s3_arm * t120 + c3_arm * t154) + t763 * t263 - t765 * t235
+            - c3_arm * t303;
+        let t773 = s5_arm * t765 - c3_arm * c5_arm;
+        let t777 = c5_arm * t765 + c3_arm * s5_arm;
+        let t785 = s6_arm * t777 - c6_arm * t763;
+        let t789 = c6_arm * t777 + s6_arm * t763;
+        let t794 = t770 + t773 * t426 - t777 * t387 - t763 * t448 + t785 * t568
+            - t789 * t527 - t773 * t590;
+        let t805 = (s7_arm * t773 - c7_arm * t789) * t669
+            + (s7_arm * t789 + c7_arm * t773) * t710 + t785 * t732;
+        let t817 = t172 + joint_accelerations[2] * parameters[27]
             + joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30] - (s4_arm * t264 + c4_arm * t284);
-        let t852 = 0.39 * s4_arm;
-        let t853 = s5_arm * t852;
-        let t855 = c5_arm * t852;
-        let t858 = 2.5641025641025643 * t853;
-        let t860 = 2.5641025641025643 * t855;
-        let t866 = t851 + t853 * t373 + t855 * t349 + t858 * t427 - t860 * t407
-            + c4_arm * t445;
-        let t869 = s6_arm * t853;
-        let t876 = c4_arm * s6_arm - c6_arm * t860;
-        let t880 = s6_arm * t860 + c4_arm * c6_arm;
-        let t885 = c6_arm * t853 * t508 - t869 * t484 - t855 * t519 + t876 * t540
-            + t880 * t560 - t858 * t578;
-        let t887 = s5_arm * c6_arm;
-        let t890 = c7_arm * t887 + c5_arm * s7_arm;
-        let t895 = c5_arm * c7_arm - s7_arm * t887;
-        let t911 = (c7_arm * t876 + s7_arm * t858) * t673
-            + (c7_arm * t858 - s7_arm * t876) * t693 + t880 * t711;
-        let t913 = t866 + t885 + t852 * t890 * t617 + t852 * t895 * t641 - t869 * t652
-            + t911;
-        let t921 = 0.39 * c5_arm;
-        let t923 = 0.39 * s5_arm;
-        let t930 = t302 + joint_accelerations[3] * parameters[41]
+            + parameters[30] - (s4_arm * t235 + c4_arm * t263);
+        let t825 = c4_arm * s6_arm - t563;
+        let t828 = t502 + c4_arm * c6_arm;
+        let t833 = t817 + t643 * t426 - t501 * t387 + c4_arm * t448 + t825 * t527
+            + t828 * t568 - t643 * t590;
+        let t843 = t833 + (c7_arm * t825 + t705) * t669 + (t644 - s7_arm * t825) * t710
+            + t828 * t732;
+        let t851 = 0.39 * c5_arm;
+        let t853 = 0.39 * s5_arm;
+        let t860 = t283 + joint_accelerations[3] * parameters[41]
             + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + t921 * t373 - t923 * t349 + s5_arm * t407 + c5_arm * t427;
-        let t931 = c6_arm * t921;
-        let t933 = s6_arm * t921;
-        let t939 = s5_arm * s6_arm;
-        let t944 = t931 * t508 - t933 * t484 + t923 * t519 + t887 * t540 - t939 * t560
-            - c5_arm * t578;
-        let t956 = (c7_arm * t931 - s7_arm * t923) * t617
-            - (s7_arm * t931 + c7_arm * t923) * t641 - t933 * t652;
-        let t974 = t445 + joint_accelerations[4] * parameters[55]
+            + parameters[44] + t851 * t420 - t853 * t384 + s5_arm * t361 + c5_arm * t411;
+        let t861 = c6_arm * t851;
+        let t863 = s6_arm * t851;
+        let t868 = s5_arm * c6_arm;
+        let t870 = s5_arm * s6_arm;
+        let t875 = t861 * t560 - t863 * t524 + t853 * t513 + t868 * t500 - t870 * t551
+            - c5_arm * t586;
+        let t887 = (c7_arm * t861 - s7_arm * t853) * t702
+            - (s7_arm * t861 + c7_arm * t853) * t666 - t863 * t655;
+        let t898 = (c7_arm * t868 + c5_arm * s7_arm) * t642
+            + (c5_arm * c7_arm - s7_arm * t868) * t693 - t870 * t728;
+        let t911 = t444 + joint_accelerations[4] * parameters[55]
             + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58] + s6_arm * t540 + c6_arm * t560;
-        let t993 = t578 + joint_accelerations[5] * parameters[69]
+            + parameters[58] + s6_arm * t500 + c6_arm * t551;
+        let t930 = t586 + joint_accelerations[5] * parameters[69]
             + joint_velocities[5] * parameters[70]
             + ::overact::math::signed(parameters[71], joint_velocities[5])
-            + parameters[72] - (s7_arm * t673 + c7_arm * t693);
+            + parameters[72] - (s7_arm * t642 + c7_arm * t693);
         [
-            t177 + t305 + t448 + t581 + t654 + t713, t792 + t815 + t827 + t838, t913,
-            t930 + t944 + t956 + t890 * t673 + t895 * t693 - t939 * t711,
-            t974 + s6_arm * c7_arm * t673 - s6_arm * s7_arm * t693 + c6_arm * t711, t993,
-            t711 + joint_accelerations[6] * parameters[83]
+            t593 + t734, t794 + t805, t843, t860 + t875 + t887 + t898,
+            t911 + s6_arm * c7_arm * t642 - s6_arm * s7_arm * t693 + c6_arm * t728, t930,
+            t728 + joint_accelerations[6] * parameters[83]
                 + joint_velocities[6] * parameters[84]
                 + ::overact::math::signed(parameters[85], joint_velocities[6])
                 + parameters[86],
@@ -1668,7 +1632,7 @@ impl KukaLwr {
     ///
     /// Output: 7 x 7.
     ///
-    /// 1403 operations (616 additions, 787 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 1387 intermediates.
+    /// 1410 operations (614 additions, 796 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 1394 intermediates.
     #[must_use]
     pub fn mass_matrix(joints: &[f64; 7], parameters: &[f64; 87]) -> [[f64; 7]; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
@@ -1682,391 +1646,373 @@ impl KukaLwr {
         let t17 = s2_arm * s3_arm;
         let t22 = 0.4 * t15;
         let t23 = parameters[25] * t22;
-        let t31 = 0.4 * t17;
-        let t32 = parameters[25] * t31;
-        let t35 = t15
-            * (t15 * parameters[17] - t17 * parameters[18] + c2_arm * parameters[19]
-                + t23)
-            - t17
-                * (t15 * parameters[18] - t17 * parameters[20] + c2_arm * parameters[21]
-                    - t32);
-        let t44 = t15 * parameters[19] - t17 * parameters[21] + c2_arm * parameters[22]
-            - parameters[23] * t22 + parameters[24] * t31;
-        let t59 = t22 * (c2_arm * parameters[23] - 2.5 * t23 - parameters[26] * t22)
-            - t31 * (parameters[26] * t31 + c2_arm * parameters[24] + 2.5 * t32);
-        let t64 = s4_arm * t31;
-        let t69 = t15 * c4_arm - c2_arm * s4_arm;
-        let t74 = c4_arm * t31;
-        let t78 = t15 * s4_arm + c2_arm * c4_arm;
-        let t84 = t64
-            * (parameters[40] * t64 - (t17 * parameters[37] + t69 * parameters[39]))
-            + t74 * (parameters[40] * t74 + t78 * parameters[39] - t17 * parameters[38]);
-        let t101 = t69
-            * (t69 * parameters[31] - t78 * parameters[32] - t17 * parameters[33]
-                - parameters[38] * t22 - parameters[39] * t64);
-        let t111 = t78
-            * (t69 * parameters[32] - t78 * parameters[34] - t17 * parameters[35]
-                + parameters[37] * t22 - parameters[39] * t74);
-        let t121 = t69 * parameters[33] - t78 * parameters[35] - t17 * parameters[36]
-            + parameters[37] * t64 + parameters[38] * t74;
-        let t124 = t84
-            - t22 * (t78 * parameters[37] + t69 * parameters[38] - parameters[40] * t22)
-            + t101 - t111 - t17 * t121;
-        let t129 = t74 + 0.39 * t17;
-        let t132 = t22 + 0.39 * t69;
-        let t134 = s5_arm * t129 - c5_arm * t132;
-        let t138 = t69 * c5_arm - t17 * s5_arm;
-        let t146 = c5_arm * t129 + s5_arm * t132;
-        let t149 = t69 * s5_arm + t17 * c5_arm;
-        let t156 = t134
-            * (t78 * parameters[51] - t138 * parameters[53] + parameters[54] * t134)
-            + t146
-                * (t149 * parameters[53] + t78 * parameters[52] + parameters[54] * t146);
-        let t173 = t138
-            * (t138 * parameters[45] - t149 * parameters[46] + t78 * parameters[47]
-                - parameters[52] * t64 - parameters[53] * t134);
-        let t183 = t149
-            * (t138 * parameters[46] - t149 * parameters[48] + t78 * parameters[49]
-                + parameters[51] * t64 - parameters[53] * t146);
-        let t193 = t138 * parameters[47] - t149 * parameters[49] + t78 * parameters[50]
-            + parameters[51] * t134 + parameters[52] * t146;
-        let t196 = t156
-            - t64
-                * (t138 * parameters[52] + t149 * parameters[51] - parameters[54] * t64)
-            + t173 - t183 + t78 * t193;
-        let t202 = s6_arm * t146 - c6_arm * t64;
-        let t206 = t138 * c6_arm + t78 * s6_arm;
-        let t214 = c6_arm * t146 + s6_arm * t64;
-        let t217 = t78 * c6_arm - t138 * s6_arm;
-        let t224 = t202
-            * (t149 * parameters[65] - t206 * parameters[67] + parameters[68] * t202)
-            - t214
-                * (t217 * parameters[67] - t149 * parameters[66]
-                    - parameters[68] * t214);
-        let t241 = t206
-            * (t206 * parameters[59] + t217 * parameters[60] + t149 * parameters[61]
-                - parameters[66] * t134 - parameters[67] * t202);
-        let t251 = t217
-            * (t206 * parameters[60] + t217 * parameters[62] + t149 * parameters[63]
-                + parameters[65] * t134 - parameters[67] * t214);
-        let t261 = t206 * parameters[61] + t217 * parameters[63] + t149 * parameters[64]
-            + parameters[65] * t202 + parameters[66] * t214;
-        let t264 = t224
-            - t134
-                * (t206 * parameters[66] - t217 * parameters[65] - parameters[68] * t134)
-            + t241 + t251 + t149 * t261;
-        let t270 = s7_arm * t134 - c7_arm * t214;
-        let t275 = t206 * s7_arm + t149 * c7_arm;
-        let t282 = s7_arm * t214 + c7_arm * t134;
-        let t286 = t206 * c7_arm - t149 * s7_arm;
-        let t292 = t270
-            * (parameters[82] * t270 - (t217 * parameters[80] + t275 * parameters[81]))
-            + t282
-                * (t217 * parameters[79] - t286 * parameters[81]
-                    + parameters[82] * t282);
-        let t309 = t286
-            * (t286 * parameters[73] - t275 * parameters[74] + t217 * parameters[75]
-                + parameters[80] * t202 - parameters[81] * t282);
-        let t319 = t275
-            * (t286 * parameters[74] - t275 * parameters[76] + t217 * parameters[77]
-                - parameters[79] * t202 + parameters[81] * t270);
-        let t329 = t286 * parameters[75] - t275 * parameters[77] + t217 * parameters[78]
-            + parameters[79] * t282 - parameters[80] * t270;
-        let t332 = t292
-            + t202
-                * (t275 * parameters[79] + t286 * parameters[80] + parameters[82] * t202)
-            + t309 - t319 + t217 * t329;
-        let t340 = 0.4 * c3_arm;
-        let t341 = parameters[25] * t340;
-        let t342 = s3_arm * parameters[18] + c3_arm * parameters[20] + t341;
-        let t347 = 0.4 * s3_arm;
-        let t348 = parameters[25] * t347;
-        let t349 = s3_arm * parameters[17] + c3_arm * parameters[18] + t348;
-        let t358 = parameters[23] * t347
+        let t31 = t15 * parameters[17] - t17 * parameters[18] + c2_arm * parameters[19]
+            + t23 - 0.4 * (c2_arm * parameters[23] - 2.5 * t23 - parameters[26] * t22);
+        let t38 = 0.4 * t17;
+        let t39 = parameters[25] * t38;
+        let t47 = t15 * parameters[18] - t17 * parameters[20] + c2_arm * parameters[21]
+            - t39 - 0.4 * (parameters[26] * t38 + c2_arm * parameters[24] + 2.5 * t39);
+        let t58 = t15 * parameters[19] - t17 * parameters[21] + c2_arm * parameters[22]
+            - parameters[23] * t22 + parameters[24] * t38;
+        let t66 = t15 * c4_arm - c2_arm * s4_arm;
+        let t70 = t15 * s4_arm + c2_arm * c4_arm;
+        let t77 = s4_arm * t38;
+        let t80 = 0.4 * c4_arm;
+        let t85 = t70 * parameters[37] + t66 * parameters[38] - parameters[40] * t22;
+        let t87 = t66 * parameters[31] - t70 * parameters[32] - t17 * parameters[33]
+            - parameters[38] * t22 - parameters[39] * t77 - t80 * t85;
+        let t96 = c4_arm * t38;
+        let t99 = 0.4 * s4_arm;
+        let t101 = t66 * parameters[32] - t70 * parameters[34] - t17 * parameters[35]
+            + parameters[37] * t22 - parameters[39] * t96 + t99 * t85;
+        let t112 = t66 * parameters[33] - t70 * parameters[35] - t17 * parameters[36]
+            + parameters[37] * t77 + parameters[38] * t96;
+        let t125 = t80
+            * (parameters[40] * t96 + t70 * parameters[39] - t17 * parameters[38])
+            + t99
+                * (parameters[40] * t77 - (t17 * parameters[37] + t66 * parameters[39]));
+        let t129 = t12 + t15 * t31 - t17 * t47 + c2_arm * t58 + t66 * t87 - t70 * t101
+            - t17 * (t112 - t125);
+        let t134 = t66 * c5_arm - t17 * s5_arm;
+        let t138 = t66 * s5_arm + t17 * c5_arm;
+        let t145 = t80 + 0.39;
+        let t146 = t17 * t145;
+        let t149 = t22 + 0.39 * t66;
+        let t151 = s5_arm * t146 - c5_arm * t149;
+        let t154 = 0.39 * s4_arm;
+        let t155 = s5_arm * t154;
+        let t156 = 1.0256410256410255 * t155;
+        let t161 = t134 * parameters[52] + t138 * parameters[51] - parameters[54] * t77;
+        let t167 = t70 * parameters[51] - t134 * parameters[53] + parameters[54] * t151;
+        let t170 = t134 * parameters[45] - t138 * parameters[46] + t70 * parameters[47]
+            - parameters[52] * t77 - parameters[53] * t151 + t156 * t161 - t145 * t167;
+        let t181 = c5_arm * t146 + s5_arm * t149;
+        let t184 = c5_arm * t154;
+        let t185 = 1.0256410256410255 * t184;
+        let t191 = t138 * parameters[53] + t70 * parameters[52] + parameters[54] * t181;
+        let t194 = t134 * parameters[46] - t138 * parameters[48] + t70 * parameters[49]
+            + parameters[51] * t77 - parameters[53] * t181 + t185 * t161 - t145 * t191;
+        let t205 = t134 * parameters[47] - t138 * parameters[49] + t70 * parameters[50]
+            + parameters[51] * t151 + parameters[52] * t181;
+        let t212 = t129 + t134 * t170 - t138 * t194
+            + t70 * (t205 - (t185 * t167 - t156 * t191));
+        let t217 = t134 * c6_arm + t70 * s6_arm;
+        let t221 = t70 * c6_arm - t134 * s6_arm;
+        let t230 = s6_arm * t181 - c6_arm * t77;
+        let t233 = 2.5641025641025643 * t184;
+        let t234 = s6_arm * t233;
+        let t237 = 0.4 * t234 + c6_arm * t145;
+        let t242 = t217 * parameters[66] - t221 * parameters[65] - parameters[68] * t151;
+        let t248 = t138 * parameters[65] - t217 * parameters[67] + parameters[68] * t230;
+        let t251 = t217 * parameters[59] + t221 * parameters[60] + t138 * parameters[61]
+            - parameters[66] * t151 - parameters[67] * t230 + t237 * t242 + t156 * t248;
+        let t262 = c6_arm * t181 + s6_arm * t77;
+        let t269 = t221 * parameters[67] - t138 * parameters[66] - parameters[68] * t262;
+        let t272 = c6_arm * t233;
+        let t274 = s6_arm * t145 - 0.4 * t272;
+        let t277 = t217 * parameters[60] + t221 * parameters[62] + t138 * parameters[63]
+            + parameters[65] * t151 - parameters[67] * t262
+            - (t156 * t269 + t274 * t242);
+        let t288 = t217 * parameters[61] + t221 * parameters[63] + t138 * parameters[64]
+            + parameters[65] * t230 + parameters[66] * t262;
+        let t295 = t212 + t217 * t251 + t221 * t277
+            + t138 * (t288 + t274 * t248 - t237 * t269);
+        let t300 = t217 * c7_arm - t138 * s7_arm;
+        let t304 = t217 * s7_arm + t138 * c7_arm;
+        let t313 = s7_arm * t262 + c7_arm * t151;
+        let t316 = 2.5641025641025643 * t155;
+        let t317 = c7_arm * t316;
+        let t320 = 0.4 * t317 - s7_arm * t274;
+        let t325 = t304 * parameters[79] + t300 * parameters[80] + parameters[82] * t230;
+        let t331 = t221 * parameters[79] - t300 * parameters[81] + parameters[82] * t313;
+        let t334 = t300 * parameters[73] - t304 * parameters[74] + t221 * parameters[75]
+            + parameters[80] * t230 - parameters[81] * t313 + t320 * t325 - t237 * t331;
+        let t345 = s7_arm * t151 - c7_arm * t262;
+        let t352 = parameters[82] * t345
+            - (t221 * parameters[80] + t304 * parameters[81]);
+        let t355 = s7_arm * t316;
+        let t357 = c7_arm * t274 + 0.4 * t355;
+        let t360 = t300 * parameters[74] - t304 * parameters[76] + t221 * parameters[77]
+            - parameters[79] * t230 + parameters[81] * t345 + t237 * t352 - t357 * t325;
+        let t371 = t300 * parameters[75] - t304 * parameters[77] + t221 * parameters[78]
+            + parameters[79] * t313 - parameters[80] * t345;
+        let t378 = t295 + t300 * t334 - t304 * t360
+            + t221 * (t371 + t357 * t331 - t320 * t352);
+        let t385 = 0.4 * c3_arm;
+        let t386 = parameters[25] * t385;
+        let t392 = s3_arm * parameters[18] + c3_arm * parameters[20] + t386
+            + 0.4 * (parameters[26] * t385 + 2.5 * t386);
+        let t397 = 0.4 * s3_arm;
+        let t398 = parameters[25] * t397;
+        let t404 = s3_arm * parameters[17] + c3_arm * parameters[18] + t398
+            + 0.4 * (2.5 * t398 + parameters[26] * t397);
+        let t413 = parameters[23] * t397
             - (s3_arm * parameters[19] + c3_arm * parameters[21])
-            + parameters[24] * t340;
-        let t362 = s3_arm * s4_arm;
-        let t364 = s3_arm * c4_arm;
-        let t371 = s4_arm * t340;
-        let t373 = parameters[32] * t362 - parameters[31] * t364
-            - c3_arm * parameters[33] + parameters[38] * t347 - parameters[39] * t371;
-        let t382 = c4_arm * t340;
-        let t384 = parameters[34] * t362 - parameters[32] * t364
-            - c3_arm * parameters[35] - parameters[37] * t347 - parameters[39] * t382;
-        let t395 = parameters[35] * t362 - parameters[33] * t364
-            - c3_arm * parameters[36] + parameters[37] * t371 + parameters[38] * t382;
-        let t398 = s2_arm * parameters[7] + c2_arm * parameters[9] + t17 * t342
-            - t15 * t349 + c2_arm * t358 + t69 * t373 - t78 * t384 - t17 * t395;
-        let t401 = c5_arm * t364 + c3_arm * s5_arm;
-        let t406 = t382 + 0.39 * c3_arm;
-        let t409 = t347 + 0.39 * t364;
-        let t411 = s5_arm * t406 + c5_arm * t409;
-        let t413 = parameters[53] * t401 - parameters[51] * t362 + parameters[54] * t411;
-        let t417 = s5_arm * t364 - c3_arm * c5_arm;
-        let t423 = s5_arm * t409 - c5_arm * t406;
-        let t425 = parameters[53] * t417 + parameters[52] * t362 + parameters[54] * t423;
-        let t432 = parameters[52] * t401 + parameters[51] * t417 + parameters[54] * t371;
-        let t443 = parameters[46] * t417 - parameters[45] * t401 - parameters[47] * t362
-            - parameters[52] * t371 - parameters[53] * t411;
-        let t453 = parameters[48] * t417 - parameters[46] * t401 - parameters[49] * t362
-            + parameters[51] * t371 + parameters[53] * t423;
-        let t464 = parameters[49] * t417 - parameters[47] * t401 - parameters[50] * t362
-            + parameters[51] * t411 - parameters[52] * t423;
-        let t467 = t134 * t413 - t146 * t425 + t64 * t432 + t138 * t443 - t149 * t453
-            + t78 * t464;
-        let t471 = c6_arm * t401 + s6_arm * t362;
-        let t477 = s6_arm * t423 + c6_arm * t371;
-        let t479 = parameters[67] * t471 - parameters[65] * t417 - parameters[68] * t477;
-        let t483 = s6_arm * t401 - c6_arm * t362;
-        let t489 = c6_arm * t423 - s6_arm * t371;
-        let t491 = parameters[67] * t483 + parameters[66] * t417 + parameters[68] * t489;
-        let t498 = parameters[66] * t471 + parameters[65] * t483 + parameters[68] * t411;
-        let t509 = parameters[60] * t483 - parameters[59] * t471 - parameters[61] * t417
-            - parameters[66] * t411 + parameters[67] * t477;
-        let t519 = parameters[62] * t483 - parameters[60] * t471 - parameters[63] * t417
-            + parameters[65] * t411 + parameters[67] * t489;
-        let t530 = parameters[63] * t483 - parameters[61] * t471 - parameters[64] * t417
-            - parameters[65] * t477 - parameters[66] * t489;
-        let t533 = t202 * t479 - t214 * t491 + t134 * t498 + t206 * t509 + t217 * t519
-            + t149 * t530;
-        let t537 = c7_arm * t489 + s7_arm * t411;
-        let t542 = s7_arm * t471 + c7_arm * t417;
-        let t545 = parameters[82] * t537
-            - (parameters[80] * t483 - parameters[81] * t542);
-        let t550 = s7_arm * t417 - c7_arm * t471;
-        let t555 = c7_arm * t411 - s7_arm * t489;
-        let t557 = parameters[79] * t483 - parameters[81] * t550 + parameters[82] * t555;
-        let t564 = parameters[80] * t550 - parameters[79] * t542 - parameters[82] * t477;
-        let t575 = parameters[73] * t550 + parameters[74] * t542 + parameters[75] * t483
-            - parameters[80] * t477 - parameters[81] * t555;
-        let t585 = parameters[74] * t550 + parameters[76] * t542 + parameters[77] * t483
-            + parameters[79] * t477 + parameters[81] * t537;
-        let t596 = parameters[75] * t550 + parameters[77] * t542 + parameters[78] * t483
-            + parameters[79] * t555 - parameters[80] * t537;
-        let t599 = t270 * t545 + t282 * t557 + t202 * t564 + t286 * t575 - t275 * t585
-            + t217 * t596;
-        let t600 = t398 + t467 + t533 + t599;
-        let t604 = c4_arm * parameters[37] - s4_arm * parameters[38];
-        let t609 = s4_arm * parameters[32] + c4_arm * parameters[34];
-        let t613 = s4_arm * parameters[31] + c4_arm * parameters[32];
-        let t618 = s4_arm * parameters[33] + c4_arm * parameters[35];
-        let t622 = t44 + t31 * parameters[39] - t22 * t604 + t78 * t609 - t69 * t613
-            + t17 * t618;
-        let t624 = 0.39 * s4_arm;
-        let t625 = c5_arm * t624;
-        let t626 = 2.5641025641025643 * t625;
-        let t627 = parameters[53] * t626;
-        let t630 = c4_arm * parameters[51] + t627 + parameters[54] * t625;
-        let t632 = s5_arm * t624;
-        let t633 = 2.5641025641025643 * t632;
-        let t634 = parameters[53] * t633;
-        let t638 = t634 - c4_arm * parameters[52] + parameters[54] * t632;
-        let t643 = parameters[52] * t626 + parameters[51] * t633;
-        let t652 = parameters[46] * t633 - parameters[45] * t626
-            + c4_arm * parameters[47] - 0.39 * t627;
-        let t660 = parameters[48] * t633 - parameters[46] * t626
-            + c4_arm * parameters[49] + 0.39 * t634;
-        let t671 = parameters[49] * t633 - parameters[47] * t626
-            + c4_arm * parameters[50] + parameters[51] * t625 - parameters[52] * t632;
-        let t674 = t134 * t630 - t146 * t638 + t64 * t643 + t138 * t652 - t149 * t660
-            + t78 * t671;
-        let t678 = c4_arm * s6_arm - c6_arm * t626;
-        let t682 = s6_arm * t626 + c4_arm * c6_arm;
-        let t689 = s6_arm * t632;
-        let t691 = parameters[59] * t678 + parameters[60] * t682 - parameters[61] * t633
-            - parameters[66] * t625 + parameters[67] * t689;
-        let t700 = c6_arm * t632;
-        let t702 = parameters[60] * t678 + parameters[62] * t682 - parameters[63] * t633
-            + parameters[65] * t625 + parameters[67] * t700;
-        let t713 = parameters[61] * t678 + parameters[63] * t682 - parameters[64] * t633
-            - parameters[65] * t689 - parameters[66] * t700;
-        let t720 = parameters[65] * t633 + parameters[67] * t678 + parameters[68] * t689;
-        let t726 = parameters[67] * t682 + parameters[66] * t633 + parameters[68] * t700;
-        let t733 = parameters[66] * t678 - parameters[65] * t682 - parameters[68] * t625;
-        let t736 = t206 * t691 + t217 * t702 + t149 * t713
-            - (t202 * t720 + t214 * t726 + t134 * t733);
-        let t738 = s5_arm * c6_arm;
-        let t741 = c7_arm * t738 + c5_arm * s7_arm;
-        let t742 = t624 * t741;
-        let t747 = c7_arm * t633 - s7_arm * t678;
-        let t750 = parameters[82] * t742
-            - (parameters[80] * t682 - parameters[81] * t747);
-        let t755 = c7_arm * t678 + s7_arm * t633;
-        let t760 = c5_arm * c7_arm - s7_arm * t738;
-        let t761 = t624 * t760;
-        let t763 = parameters[79] * t682 - parameters[81] * t755 + parameters[82] * t761;
-        let t770 = parameters[80] * t755 - parameters[79] * t747 - parameters[82] * t689;
-        let t781 = parameters[73] * t755 + parameters[74] * t747 + parameters[75] * t682
-            - parameters[80] * t689 - parameters[81] * t761;
-        let t791 = parameters[74] * t755 + parameters[76] * t747 + parameters[77] * t682
-            + parameters[79] * t689 + parameters[81] * t742;
-        let t802 = parameters[75] * t755 + parameters[77] * t747 + parameters[78] * t682
-            + parameters[79] * t761 - parameters[80] * t742;
-        let t805 = t270 * t750 + t282 * t763 + t202 * t770 + t286 * t781 - t275 * t791
-            + t217 * t802;
-        let t806 = t622 + t674 + t736 + t805;
-        let t810 = s5_arm * parameters[53];
-        let t812 = s5_arm * parameters[45] + c5_arm * parameters[46] + 0.39 * t810;
-        let t817 = c5_arm * parameters[53];
-        let t819 = s5_arm * parameters[46] + c5_arm * parameters[48] + 0.39 * t817;
-        let t825 = 0.39 * s5_arm;
-        let t828 = 0.39 * c5_arm;
-        let t830 = s5_arm * parameters[47] + c5_arm * parameters[49]
-            - parameters[51] * t825 - parameters[52] * t828;
-        let t834 = t810 + parameters[54] * t825;
-        let t837 = t817 + parameters[54] * t828;
-        let t842 = s5_arm * parameters[52] - c5_arm * parameters[51];
-        let t845 = t138 * t812 - t149 * t819 + t78 * t830
-            - (t134 * t834 + t146 * t837 + t64 * t842);
-        let t848 = s5_arm * s6_arm;
-        let t855 = s6_arm * t828;
-        let t857 = parameters[59] * t738 - parameters[60] * t848
-            - c5_arm * parameters[61] + parameters[66] * t825 + parameters[67] * t855;
-        let t866 = c6_arm * t828;
-        let t868 = parameters[60] * t738 - parameters[62] * t848
-            - c5_arm * parameters[63] - parameters[65] * t825 + parameters[67] * t866;
-        let t879 = parameters[61] * t738 - parameters[63] * t848
-            - c5_arm * parameters[64] - parameters[65] * t855 - parameters[66] * t866;
-        let t886 = c5_arm * parameters[65] + parameters[67] * t738
-            + parameters[68] * t855;
-        let t892 = c5_arm * parameters[66] - parameters[67] * t848
-            + parameters[68] * t866;
-        let t899 = parameters[66] * t738 + parameters[65] * t848 + parameters[68] * t825;
-        let t902 = t206 * t857 + t217 * t868 + t149 * t879
-            - (t202 * t886 + t214 * t892 + t134 * t899);
-        let t906 = c7_arm * t866 - s7_arm * t825;
-        let t911 = parameters[82] * t906 + parameters[80] * t848 + parameters[81] * t760;
-        let t918 = s7_arm * t866 + c7_arm * t825;
-        let t920 = parameters[79] * t848 + parameters[81] * t741 + parameters[82] * t918;
-        let t927 = parameters[80] * t741 - parameters[79] * t760 - parameters[82] * t855;
-        let t938 = parameters[73] * t741 + parameters[74] * t760 - parameters[75] * t848
-            - parameters[80] * t855 + parameters[81] * t918;
-        let t948 = parameters[74] * t741 + parameters[76] * t760 - parameters[77] * t848
-            + parameters[79] * t855 + parameters[81] * t906;
-        let t959 = parameters[75] * t741 + parameters[77] * t760 - parameters[78] * t848
-            - parameters[79] * t918 - parameters[80] * t906;
-        let t962 = t270 * t911 - t282 * t920 + t202 * t927 + t286 * t938 - t275 * t948
-            + t217 * t959;
-        let t963 = t121 + t845 + t902 + t962;
-        let t966 = s6_arm * parameters[59] + c6_arm * parameters[60];
-        let t970 = s6_arm * parameters[60] + c6_arm * parameters[62];
-        let t975 = s6_arm * parameters[61] + c6_arm * parameters[63];
-        let t981 = s6_arm * parameters[66] - c6_arm * parameters[65];
-        let t985 = t193 + t206 * t966 + t217 * t970 + t149 * t975
-            - (t146 * parameters[67] + t134 * t981);
-        let t987 = s6_arm * c7_arm;
-        let t989 = c6_arm * parameters[79] - parameters[81] * t987;
-        let t992 = s6_arm * s7_arm;
-        let t994 = c6_arm * parameters[80] + parameters[81] * t992;
-        let t999 = parameters[79] * t992 + parameters[80] * t987;
-        let t1006 = parameters[73] * t987 - parameters[74] * t992
+            + parameters[24] * t385;
+        let t417 = s3_arm * s4_arm;
+        let t419 = s3_arm * c4_arm;
+        let t426 = s4_arm * t385;
+        let t433 = parameters[40] * t397
+            - (parameters[37] * t417 + parameters[38] * t419);
+        let t435 = parameters[32] * t417 - parameters[31] * t419
+            - c3_arm * parameters[33] + parameters[38] * t397 - parameters[39] * t426
+            - t80 * t433;
+        let t444 = c4_arm * t385;
+        let t448 = parameters[34] * t417 - parameters[32] * t419
+            - c3_arm * parameters[35] - parameters[37] * t397 - parameters[39] * t444
+            + t99 * t433;
+        let t459 = parameters[35] * t417 - parameters[33] * t419
+            - c3_arm * parameters[36] + parameters[37] * t426 + parameters[38] * t444;
+        let t472 = t80
+            * (c3_arm * parameters[38] + parameters[39] * t417 - parameters[40] * t444)
+            - t99
+                * (parameters[39] * t419 - c3_arm * parameters[37]
+                    + parameters[40] * t426);
+        let t473 = t459 + t472;
+        let t476 = s2_arm * parameters[7] + c2_arm * parameters[9] + t17 * t392
+            - t15 * t404 + c2_arm * t413 + t66 * t435 - t70 * t448 - t17 * t473;
+        let t479 = s5_arm * t419 - c3_arm * c5_arm;
+        let t483 = c5_arm * t419 + c3_arm * s5_arm;
+        let t490 = c3_arm * t145;
+        let t493 = t397 + 0.39 * t419;
+        let t495 = s5_arm * t490 + c5_arm * t493;
+        let t502 = parameters[52] * t483 + parameters[51] * t479 + parameters[54] * t426;
+        let t508 = parameters[53] * t483 - parameters[51] * t417 + parameters[54] * t495;
+        let t511 = parameters[46] * t479 - parameters[45] * t483 - parameters[47] * t417
+            - parameters[52] * t426 - parameters[53] * t495
+            - (t156 * t502 + t145 * t508);
+        let t522 = s5_arm * t493 - c5_arm * t490;
+        let t529 = parameters[53] * t479 + parameters[52] * t417 + parameters[54] * t522;
+        let t533 = parameters[48] * t479 - parameters[46] * t483 - parameters[49] * t417
+            + parameters[51] * t426 + parameters[53] * t522 + t145 * t529 - t185 * t502;
+        let t544 = parameters[49] * t479 - parameters[47] * t483 - parameters[50] * t417
+            + parameters[51] * t495 - parameters[52] * t522;
+        let t548 = t544 - (t185 * t508 + t156 * t529);
+        let t554 = s6_arm * t483 - c6_arm * t417;
+        let t558 = c6_arm * t483 + s6_arm * t417;
+        let t567 = s6_arm * t522 + c6_arm * t426;
+        let t574 = parameters[67] * t558 - parameters[65] * t479 - parameters[68] * t567;
+        let t580 = parameters[66] * t558 + parameters[65] * t554 + parameters[68] * t495;
+        let t583 = parameters[60] * t554 - parameters[59] * t558 - parameters[61] * t479
+            - parameters[66] * t495 + parameters[67] * t567 + t156 * t574 - t237 * t580;
+        let t594 = c6_arm * t522 - s6_arm * t426;
+        let t601 = parameters[67] * t554 + parameters[66] * t479 + parameters[68] * t594;
+        let t605 = parameters[62] * t554 - parameters[60] * t558 - parameters[63] * t479
+            + parameters[65] * t495 + parameters[67] * t594
+            - (t156 * t601 - t274 * t580);
+        let t616 = parameters[63] * t554 - parameters[61] * t558 - parameters[64] * t479
+            - parameters[65] * t567 - parameters[66] * t594;
+        let t620 = t616 + t274 * t574 - t237 * t601;
+        let t623 = t476 + t134 * t511 - t138 * t533 + t70 * t548 + t217 * t583
+            + t221 * t605 + t138 * t620;
+        let t626 = s7_arm * t479 - c7_arm * t558;
+        let t630 = s7_arm * t558 + c7_arm * t479;
+        let t639 = c7_arm * t495 - s7_arm * t594;
+        let t646 = parameters[80] * t626 - parameters[79] * t630 - parameters[82] * t567;
+        let t652 = parameters[79] * t554 - parameters[81] * t626 + parameters[82] * t639;
+        let t655 = parameters[73] * t626 + parameters[74] * t630 + parameters[75] * t554
+            - parameters[80] * t567 - parameters[81] * t639 + t320 * t646 - t237 * t652;
+        let t666 = c7_arm * t594 + s7_arm * t495;
+        let t673 = parameters[82] * t666
+            - (parameters[80] * t554 - parameters[81] * t630);
+        let t677 = parameters[74] * t626 + parameters[76] * t630 + parameters[77] * t554
+            + parameters[79] * t567 + parameters[81] * t666 + t237 * t673 - t357 * t646;
+        let t688 = parameters[75] * t626 + parameters[77] * t630 + parameters[78] * t554
+            + parameters[79] * t639 - parameters[80] * t666;
+        let t692 = t688 + t357 * t652 - t320 * t673;
+        let t695 = t623 + t300 * t655 - t304 * t677 + t221 * t692;
+        let t698 = s4_arm * parameters[33] + c4_arm * parameters[35];
+        let t700 = t698 + 0.4 * parameters[39];
+        let t707 = c4_arm * parameters[37] - s4_arm * parameters[38];
+        let t709 = s4_arm * parameters[31] + c4_arm * parameters[32] + t80 * t707;
+        let t715 = t99 * t707 - (s4_arm * parameters[32] + c4_arm * parameters[34]);
+        let t725 = parameters[53] * t184;
+        let t729 = parameters[52] * t233 + parameters[51] * t316;
+        let t735 = c4_arm * parameters[51] + 2.5641025641025643 * t725
+            + parameters[54] * t184;
+        let t738 = parameters[46] * t316 - parameters[45] * t233
+            + c4_arm * parameters[47] - t725 - (t156 * t729 + t145 * t735);
+        let t745 = parameters[53] * t155;
+        let t751 = 2.5641025641025643 * t745 - c4_arm * parameters[52]
+            + parameters[54] * t155;
+        let t755 = parameters[48] * t316 - parameters[46] * t233
+            + c4_arm * parameters[49] + t745 + t145 * t751 - t185 * t729;
+        let t766 = parameters[49] * t316 - parameters[47] * t233
+            + c4_arm * parameters[50] + parameters[51] * t184 - parameters[52] * t155;
+        let t770 = t766 - (t185 * t735 + t156 * t751);
+        let t773 = t58 + t17 * t700 - (t66 * t709 + t70 * t715) + t134 * t738
+            - t138 * t755 + t70 * t770;
+        let t775 = c4_arm * s6_arm - t272;
+        let t778 = t234 + c4_arm * c6_arm;
+        let t785 = s6_arm * t155;
+        let t786 = parameters[67] * t785;
+        let t792 = parameters[66] * t775 - parameters[65] * t778 - parameters[68] * t184;
+        let t798 = parameters[65] * t316 + parameters[67] * t775 + parameters[68] * t785;
+        let t801 = parameters[59] * t775 + parameters[60] * t778 - parameters[61] * t316
+            - parameters[66] * t184 + t786 + t237 * t792 - t156 * t798;
+        let t810 = c6_arm * t155;
+        let t811 = parameters[67] * t810;
+        let t817 = parameters[67] * t778 + parameters[66] * t316 + parameters[68] * t810;
+        let t821 = parameters[60] * t775 + parameters[62] * t778 - parameters[63] * t316
+            + parameters[65] * t184 + t811 - (t156 * t817 + t274 * t792);
+        let t832 = parameters[61] * t775 + parameters[63] * t778 - parameters[64] * t316
+            - parameters[65] * t785 - parameters[66] * t810;
+        let t836 = t832 - (t274 * t798 + t237 * t817);
+        let t841 = c7_arm * t775 + t355;
+        let t844 = t317 - s7_arm * t775;
+        let t852 = s5_arm * c6_arm;
+        let t854 = c5_arm * c7_arm - s7_arm * t852;
+        let t855 = t154 * t854;
+        let t862 = parameters[80] * t841 - parameters[79] * t844 - parameters[82] * t785;
+        let t868 = parameters[79] * t778 - parameters[81] * t841 + parameters[82] * t855;
+        let t871 = parameters[73] * t841 + parameters[74] * t844 + parameters[75] * t778
+            - parameters[80] * t785 - parameters[81] * t855 + t320 * t862 - t237 * t868;
+        let t882 = c7_arm * t852 + c5_arm * s7_arm;
+        let t883 = t154 * t882;
+        let t890 = parameters[82] * t883
+            - (parameters[80] * t778 - parameters[81] * t844);
+        let t894 = parameters[74] * t841 + parameters[76] * t844 + parameters[77] * t778
+            + parameters[79] * t785 + parameters[81] * t883 + t237 * t890 - t357 * t862;
+        let t905 = parameters[75] * t841 + parameters[77] * t844 + parameters[78] * t778
+            + parameters[79] * t855 - parameters[80] * t883;
+        let t909 = t905 + t357 * t868 - t320 * t890;
+        let t912 = t773 + t217 * t801 + t221 * t821 + t138 * t836 + t300 * t871
+            - t304 * t894 + t221 * t909;
+        let t916 = 0.39 * s5_arm;
+        let t917 = parameters[53] * t916;
+        let t918 = s5_arm * parameters[45] + c5_arm * parameters[46] + t917;
+        let t921 = s5_arm * parameters[52] - c5_arm * parameters[51];
+        let t925 = 2.5641025641025643 * t917 + parameters[54] * t916;
+        let t928 = t918 + t156 * t921 + t145 * t925;
+        let t933 = 0.39 * c5_arm;
+        let t934 = parameters[53] * t933;
+        let t935 = s5_arm * parameters[46] + c5_arm * parameters[48] + t934;
+        let t938 = 2.5641025641025643 * t934 + parameters[54] * t933;
+        let t942 = t935 + t145 * t938 + t185 * t921;
+        let t951 = s5_arm * parameters[47] + c5_arm * parameters[49]
+            - parameters[51] * t916 - parameters[52] * t933;
+        let t956 = s5_arm * s6_arm;
+        let t963 = s6_arm * t933;
+        let t965 = parameters[59] * t852 - parameters[60] * t956
+            - c5_arm * parameters[61] + parameters[66] * t916 + parameters[67] * t963;
+        let t970 = parameters[66] * t852 + parameters[65] * t956 + parameters[68] * t916;
+        let t976 = c5_arm * parameters[65] + parameters[67] * t852
+            + parameters[68] * t963;
+        let t979 = t965 + t237 * t970 - t156 * t976;
+        let t988 = c6_arm * t933;
+        let t990 = parameters[60] * t852 - parameters[62] * t956
+            - c5_arm * parameters[63] - parameters[65] * t916 + parameters[67] * t988;
+        let t995 = c5_arm * parameters[66] - parameters[67] * t956
+            + parameters[68] * t988;
+        let t999 = t990 - (t156 * t995 + t274 * t970);
+        let t1010 = parameters[61] * t852 - parameters[63] * t956
+            - c5_arm * parameters[64] - parameters[65] * t963 - parameters[66] * t988;
+        let t1014 = t1010 - (t274 * t976 + t237 * t995);
+        let t1017 = t112 + t134 * t928 - t138 * t942 + t70 * t951 + t217 * t979
+            + t221 * t999 + t138 * t1014;
+        let t1027 = s7_arm * t988 + c7_arm * t916;
+        let t1029 = parameters[73] * t882 + parameters[74] * t854 - parameters[75] * t956
+            - parameters[80] * t963 + parameters[81] * t1027;
+        let t1034 = parameters[80] * t882 - parameters[79] * t854
+            - parameters[82] * t963;
+        let t1040 = parameters[79] * t956 + parameters[81] * t882
+            + parameters[82] * t1027;
+        let t1043 = t1029 + t320 * t1034 + t237 * t1040;
+        let t1054 = c7_arm * t988 - s7_arm * t916;
+        let t1056 = parameters[74] * t882 + parameters[76] * t854 - parameters[77] * t956
+            + parameters[79] * t963 + parameters[81] * t1054;
+        let t1061 = parameters[82] * t1054 + parameters[80] * t956
+            + parameters[81] * t854;
+        let t1065 = t1056 + t237 * t1061 - t357 * t1034;
+        let t1076 = parameters[75] * t882 + parameters[77] * t854 - parameters[78] * t956
+            - parameters[79] * t1027 - parameters[80] * t1054;
+        let t1080 = t1076 - (t357 * t1040 + t320 * t1061);
+        let t1083 = t1017 + t300 * t1043 - t304 * t1065 + t221 * t1080;
+        let t1086 = s6_arm * parameters[59] + c6_arm * parameters[60];
+        let t1089 = s6_arm * parameters[66] - c6_arm * parameters[65];
+        let t1093 = t1086 + t237 * t1089 - 1.0256410256410255 * t786;
+        let t1097 = s6_arm * parameters[60] + c6_arm * parameters[62];
+        let t1101 = t1097 - (1.0256410256410255 * t811 + t274 * t1089);
+        let t1106 = s6_arm * parameters[61] + c6_arm * parameters[63];
+        let t1108 = t1106 - t145 * parameters[67];
+        let t1112 = s6_arm * c7_arm;
+        let t1114 = s6_arm * s7_arm;
+        let t1118 = parameters[73] * t1112 - parameters[74] * t1114
             + c6_arm * parameters[75];
-        let t1012 = parameters[74] * t987 - parameters[76] * t992
+        let t1121 = parameters[79] * t1114 + parameters[80] * t1112;
+        let t1125 = c6_arm * parameters[79] - parameters[81] * t1112;
+        let t1128 = t1118 + t320 * t1121 - t237 * t1125;
+        let t1134 = parameters[74] * t1112 - parameters[76] * t1114
             + c6_arm * parameters[77];
-        let t1019 = parameters[75] * t987 - parameters[77] * t992
+        let t1137 = c6_arm * parameters[80] + parameters[81] * t1114;
+        let t1141 = t1134 - (t237 * t1137 + t357 * t1121);
+        let t1148 = parameters[75] * t1112 - parameters[77] * t1114
             + c6_arm * parameters[78];
-        let t1022 = t282 * t989 - t270 * t994 + t202 * t999 + t286 * t1006 - t275 * t1012
-            + t217 * t1019;
-        let t1023 = t985 + t1022;
-        let t1027 = c7_arm * parameters[79] - s7_arm * parameters[80];
-        let t1032 = s7_arm * parameters[74] + c7_arm * parameters[76];
-        let t1036 = s7_arm * parameters[73] + c7_arm * parameters[74];
-        let t1041 = s7_arm * parameters[75] + c7_arm * parameters[77];
-        let t1045 = t261 + t214 * parameters[81] + t202 * t1027 + t275 * t1032
-            - t286 * t1036 - t217 * t1041;
-        let t1059 = t347 * (2.5 * t348 + parameters[26] * t347)
-            + t340 * (parameters[26] * t340 + 2.5 * t341) + s3_arm * t349
-            + c3_arm * t342;
-        let t1073 = t371
-            * (parameters[39] * t364 - c3_arm * parameters[37] + parameters[40] * t371)
-            - t382
-                * (c3_arm * parameters[38] + parameters[39] * t362
-                    - parameters[40] * t382);
-        let t1086 = t1073
-            + t347
-                * (parameters[40] * t347
-                    - (parameters[37] * t362 + parameters[38] * t364)) + t362 * t384
-            - t364 * t373 - c3_arm * t395;
-        let t1098 = t423 * t425 + t411 * t413 + t371 * t432 + t417 * t453 - t401 * t443
-            - t362 * t464;
-        let t1110 = t489 * t491 - t477 * t479 + t411 * t498 + t483 * t519 - t471 * t509
-            - t417 * t530;
-        let t1122 = t537 * t545 + t555 * t557 - t477 * t564 + t550 * t575 + t542 * t585
-            + t483 * t596;
-        let t1133 = t358 + parameters[39] * t340 + t347 * t604 + t364 * t613
-            - t362 * t609 + c3_arm * t618;
-        let t1144 = t423 * t638 + t411 * t630 + t371 * t643 + t417 * t660 - t401 * t652
-            - t362 * t671;
-        let t1156 = t489 * t726 + t477 * t720 - t411 * t733 + t483 * t702 - t471 * t691
-            - t417 * t713;
-        let t1168 = t537 * t750 + t555 * t763 - t477 * t770 + t550 * t781 + t542 * t791
-            + t483 * t802;
-        let t1169 = t1133 + t1144 + t1156 + t1168;
-        let t1180 = t423 * t837 - t411 * t834 - t371 * t842 + t417 * t819 - t401 * t812
-            - t362 * t830;
-        let t1192 = t489 * t892 + t477 * t886 - t411 * t899 + t483 * t868 - t471 * t857
-            - t417 * t879;
-        let t1204 = t537 * t911 - t555 * t920 - t477 * t927 + t550 * t938 + t542 * t948
-            + t483 * t959;
-        let t1205 = t395 + t1180 + t1192 + t1204;
-        let t1215 = t464 + parameters[67] * t423 - t411 * t981 + t483 * t970
-            - t471 * t966 - t417 * t975;
-        let t1226 = t555 * t989 - t537 * t994 - t477 * t999 + t550 * t1006 + t542 * t1012
-            + t483 * t1019;
-        let t1227 = t1215 + t1226;
-        let t1237 = t530
-            - (parameters[81] * t489 + t477 * t1027 + t550 * t1036 + t542 * t1032
-                + t483 * t1041);
-        let t1252 = parameters[22] + parameters[27] + s4_arm * t613 + c4_arm * t609
-            + t632 * t638 + t625 * t630 + t633 * t660 - t626 * t652 + c4_arm * t671;
-        let t1263 = t700 * t726 + t689 * t720 - t625 * t733 + t678 * t691 + t682 * t702
-            - t633 * t713;
-        let t1275 = t742 * t750 + t761 * t763 - t689 * t770 + t755 * t781 + t747 * t791
-            + t682 * t802;
-        let t1288 = t633 * t819 - t626 * t812 + c4_arm * t830 - t618 + t678 * t857
-            + t682 * t868 - t633 * t879;
-        let t1294 = t1288 + t755 * t938 + t747 * t948 + t682 * t959;
-        let t1304 = t671 + parameters[67] * t632 - t625 * t981 + t678 * t966
-            + t682 * t970 - t633 * t975;
-        let t1315 = t761 * t989 - t742 * t994 - t689 * t999 + t755 * t1006 + t747 * t1012
-            + t682 * t1019;
-        let t1316 = t1304 + t1315;
-        let t1326 = t713
-            - (parameters[81] * t700 + t689 * t1027 + t755 * t1036 + t747 * t1032
-                + t682 * t1041);
-        let t1346 = t866 * t892 + t855 * t886 + t825 * t899 + t738 * t857 - t848 * t868
-            - c5_arm * t879;
-        let t1347 = parameters[36] + parameters[41] + t828 * t837 + t825 * t834
-            + s5_arm * t812 + c5_arm * t819 + t1346;
-        let t1358 = t906 * t911 + t918 * t920 - t855 * t927 + t741 * t938 + t760 * t948
-            - t848 * t959;
-        let t1369 = t830 + parameters[67] * t828 + t825 * t981 + t738 * t966
-            - t848 * t970 - c5_arm * t975;
-        let t1380 = t741 * t1006 + t760 * t1012 - t848 * t1019
-            - (t906 * t994 + t918 * t989 + t855 * t999);
-        let t1381 = t1369 + t1380;
-        let t1391 = t879 + t848 * t1041 - (t741 * t1036 + t760 * t1032)
-            - (parameters[81] * t866 + t855 * t1027);
-        let t1402 = parameters[50] + parameters[55] + s6_arm * t966 + c6_arm * t970
-            + t987 * t1006 - t992 * t1012 + c6_arm * t1019;
-        let t1408 = t975 + t992 * t1032 - t987 * t1036 - c6_arm * t1041;
+        let t1152 = t1148 + t357 * t1125 + t320 * t1137;
+        let t1155 = t205 + t217 * t1093 + t221 * t1101 + t138 * t1108 + t300 * t1128
+            - t304 * t1141 + t221 * t1152;
+        let t1158 = c7_arm * parameters[79] - s7_arm * parameters[80];
+        let t1165 = s7_arm * parameters[73] + c7_arm * parameters[74];
+        let t1166 = t320 * t1158 - t237 * (s7_arm * parameters[81]) - t1165;
+        let t1170 = s7_arm * parameters[74] + c7_arm * parameters[76];
+        let t1175 = t1170 + t237 * (c7_arm * parameters[81]) + t357 * t1158;
+        let t1181 = s7_arm * parameters[75] + c7_arm * parameters[77];
+        let t1182 = t156 * parameters[81] - t1181;
+        let t1185 = t288 + t300 * t1166 + t304 * t1175 + t221 * t1182;
+        let t1196 = parameters[10] + parameters[13] + s3_arm * t404 + c3_arm * t392
+            + t417 * t448 - t419 * t435 - c3_arm * t473;
+        let t1208 = t1196 + t479 * t533 - t483 * t511 - t417 * t548 + t554 * t605
+            - t558 * t583 - t479 * t620;
+        let t1226 = t413 + t417 * t715 + t419 * t709 + c3_arm * t700 + t479 * t755
+            - t483 * t738 - t417 * t770;
+        let t1238 = t1226 + t554 * t821 - t558 * t801 - t479 * t836 + t626 * t871
+            + t630 * t894 + t554 * t909;
+        let t1250 = t459 + t479 * t942 - t483 * t928 - t417 * t951 + t554 * t999
+            - t558 * t979 - t479 * t1014;
+        let t1256 = t1250 + t626 * t1043 + t630 * t1065 + t554 * t1080;
+        let t1268 = t544 + t554 * t1101 - t558 * t1093 - t479 * t1108 + t626 * t1128
+            + t630 * t1141 + t554 * t1152;
+        let t1274 = t616 + t626 * t1166 - t630 * t1175 + t554 * t1182;
+        let t1285 = parameters[22] + parameters[27] - (c4_arm * t715 - s4_arm * t709)
+            + t316 * t755 - t233 * t738 + c4_arm * t770;
+        let t1297 = t1285 + t775 * t801 + t778 * t821 - t316 * t836 + t841 * t871
+            + t844 * t894 + t778 * t909;
+        let t1309 = t316 * t942 - t233 * t928 + c4_arm * t951 - t698 + t775 * t979
+            + t778 * t999 - t316 * t1014;
+        let t1315 = t1309 + t841 * t1043 + t844 * t1065 + t778 * t1080;
+        let t1327 = t766 + t775 * t1093 + t778 * t1101 - t316 * t1108 + t841 * t1128
+            + t844 * t1141 + t778 * t1152;
+        let t1333 = t832 + t841 * t1166 - t844 * t1175 + t778 * t1182;
+        let t1353 = t988 * t995 + t963 * t976 + t916 * t970 + t852 * t965 - t956 * t990
+            - c5_arm * t1010;
+        let t1354 = parameters[36] + parameters[41] + t933 * t938 + t916 * t925
+            + s5_arm * t918 + c5_arm * t935 + t1353;
+        let t1365 = t1054 * t1061 + t1027 * t1040 - t963 * t1034 + t882 * t1029
+            + t854 * t1056 - t956 * t1076;
+        let t1376 = t951 + parameters[67] * t933 + t916 * t1089 + t852 * t1086
+            - t956 * t1097 - c5_arm * t1106;
+        let t1387 = t882 * t1118 + t854 * t1134 - t956 * t1148
+            - (t1054 * t1137 + t1027 * t1125 + t963 * t1121);
+        let t1388 = t1376 + t1387;
+        let t1398 = t1010 + t956 * t1181 - (t882 * t1165 + t854 * t1170)
+            - (parameters[81] * t988 + t963 * t1158);
+        let t1409 = parameters[50] + parameters[55] + s6_arm * t1086 + c6_arm * t1097
+            + t1112 * t1118 - t1114 * t1134 + c6_arm * t1148;
+        let t1415 = t1106 + t1114 * t1170 - t1112 * t1165 - c6_arm * t1181;
         [
+            [t378, t695, t912, t1083, t1155, t1185, t371],
             [
-                t12 + t35 + c2_arm * t44 - t59 + t124 + t196 + t264 + t332, t600, t806, t963, t1023,
-                t1045, t329,
+                t695, t1208 + t626 * t655 + t630 * t677 + t554 * t692, t1238, t1256, t1268, t1274,
+                t688,
             ],
+            [t912, t1238, t1297, t1315, t1327, t1333, t905],
+            [t1083, t1256, t1315, t1354 + t1365, t1388, t1398, t1076],
+            [t1155, t1268, t1327, t1388, t1409, t1415, t1148],
             [
-                t600, parameters[10] + parameters[13] + t1059 + t1086 + t1098 + t1110 + t1122,
-                t1169, t1205, t1227, t1237, t596,
+                t1185, t1274, t1333, t1398, t1415,
+                parameters[64] + parameters[69] + s7_arm * t1165 + c7_arm * t1170, -t1181,
             ],
-            [t806, t1169, t1252 + t1263 + t1275, t1294, t1316, t1326, t802],
-            [t963, t1205, t1294, t1347 + t1358, t1381, t1391, t959],
-            [t1023, t1227, t1316, t1381, t1402, t1408, t1019],
-            [
-                t1045, t1237, t1326, t1391, t1408,
-                parameters[64] + parameters[69] + s7_arm * t1036 + c7_arm * t1032, -t1041,
-            ],
-            [t329, t596, t802, t959, t1019, -t1041, parameters[78] + parameters[83]],
+            [t371, t688, t905, t1076, t1148, -t1181, parameters[78] + parameters[83]],
         ]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -2078,7 +2024,7 @@ impl KukaLwr {
     ///
     /// Output: 7.
     ///
-    /// 944 operations (427 additions, 517 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 956 intermediates.
+    /// 881 operations (404 additions, 477 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 893 intermediates.
     #[must_use]
     pub fn bias(
         joints: &[f64; 7],
@@ -2106,307 +2052,300 @@ impl KukaLwr {
             + s2_arm * (t23 + parameters[10] * t7)
             + c2_arm * (t38 - parameters[10] * t10);
         let t46 = s2_arm * c3_arm;
-        let t47 = 0.4 * t46;
-        let t50 = c3_arm * t9 - s3_arm * joint_velocities[1];
-        let t53 = s3_arm * t9 + c3_arm * joint_velocities[1];
-        let t54 = t50 * t53;
-        let t55 = t54 + t10;
-        let t57 = t50 * t50;
-        let t58 = t6 + joint_velocities[2];
-        let t59 = t58 * t58;
-        let t60 = t57 + t59;
-        let t63 = t53 * t58;
-        let t64 = c3_arm * t7;
-        let t66 = t64 - joint_velocities[2] * t53;
-        let t67 = t63 + t66;
-        let t70 = 9.81 * s2_arm;
-        let t72 = t70 + 0.4 * t14;
-        let t75 = s3_arm * t72 + 0.8 * t64;
-        let t77 = parameters[23] * t55 + parameters[24] * t60 + parameters[25] * t67
-            + parameters[26] * t75;
-        let t79 = s2_arm * s3_arm;
-        let t80 = 0.4 * t79;
-        let t81 = t10 - t54;
-        let t83 = t53 * t53;
-        let t87 = t50 * t58;
-        let t88 = s3_arm * t7;
-        let t90 = t88 + joint_velocities[2] * t50;
-        let t91 = t87 - t90;
-        let t96 = c3_arm * t72 - 0.8 * t88;
-        let t98 = parameters[24] * t81 - parameters[23] * (t83 + t59)
-            + parameters[25] * t91 + parameters[26] * t96;
-        let t111 = parameters[17] * t66 - parameters[18] * (t87 + t90)
-            - parameters[19] * t55 + parameters[20] * t63 + parameters[21] * (t83 - t59);
-        let t114 = 9.81 * c2_arm;
-        let t117 = t114 - 0.4 * (t31 + t20);
-        let t121 = t111 - parameters[22] * t63 + parameters[24] * t117
-            + parameters[25] * t75;
-        let t133 = parameters[17] * t87 + parameters[18] * (t66 - t63)
-            + parameters[19] * (t59 - t57) - parameters[20] * t90 - parameters[21] * t81;
-        let t139 = t133 - parameters[22] * t87 - parameters[23] * t117
-            + parameters[25] * t96;
-        let t151 = parameters[17] * t54 + parameters[18] * (t57 - t83)
-            + parameters[19] * t67 - parameters[20] * t54 + parameters[21] * t91;
-        let t157 = t151 - parameters[22] * t10 - parameters[23] * t75
-            - parameters[24] * t96;
-        let t161 = t43 + t47 * t77 - t80 * t98 + t46 * t121 - t79 * t139 + c2_arm * t157;
-        let t166 = t46 * c4_arm - c2_arm * s4_arm;
-        let t172 = s4_arm * t50 + c4_arm * t58;
-        let t174 = c4_arm * t66 + s4_arm * t10 - joint_velocities[3] * t172;
-        let t178 = c4_arm * t50 - s4_arm * t58;
-        let t179 = joint_velocities[3] - t53;
-        let t180 = t178 * t179;
-        let t185 = c4_arm * t10 - s4_arm * t66 - joint_velocities[3] * t178;
-        let t186 = t180 - t185;
-        let t189 = t178 * t172;
-        let t190 = t189 + t90;
-        let t193 = t172 * t179;
-        let t196 = t172 * t172;
-        let t197 = t179 * t179;
-        let t200 = parameters[31] * t174 - parameters[32] * t186 - parameters[33] * t190
-            + parameters[34] * t193 + parameters[35] * (t196 - t197);
-        let t207 = s4_arm * t96 + c4_arm * t117;
-        let t209 = t200 - parameters[36] * t193 - parameters[38] * t75
-            + parameters[39] * t207;
-        let t213 = t46 * s4_arm + c2_arm * c4_arm;
-        let t215 = t174 - t193;
-        let t218 = t178 * t178;
-        let t224 = t90 - t189;
-        let t226 = parameters[31] * t180 + parameters[32] * t215
-            + parameters[33] * (t197 - t218) + parameters[34] * t185
-            - parameters[35] * t224;
-        let t233 = c4_arm * t96 - s4_arm * t117;
-        let t235 = t226 - parameters[36] * t180 + parameters[37] * t75
-            + parameters[39] * t233;
-        let t242 = t193 + t174;
-        let t247 = t180 + t185;
-        let t249 = parameters[31] * t189 + parameters[32] * (t218 - t196)
-            + parameters[33] * t242 - parameters[34] * t189 + parameters[35] * t247;
-        let t255 = t249 - parameters[36] * t90 - parameters[37] * t207
-            - parameters[38] * t233;
-        let t258 = c4_arm * t80;
-        let t266 = parameters[38] * t224 - parameters[37] * (t196 + t197)
-            + parameters[39] * t247 + parameters[40] * t233;
-        let t268 = s4_arm * t80;
-        let t270 = t218 + t197;
-        let t276 = parameters[37] * t190 + parameters[38] * t270 + parameters[39] * t242
-            + parameters[40] * t207;
-        let t285 = parameters[37] * t186 + parameters[38] * t215 - parameters[39] * t60
-            - parameters[40] * t75;
-        let t288 = t166 * t209 - t213 * t235 - t79 * t255
-            - (t258 * t266 + t268 * t276 + t47 * t285);
-        let t293 = t258 + 0.39 * t79;
-        let t296 = t47 + 0.39 * t166;
-        let t298 = s5_arm * t293 - c5_arm * t296;
-        let t301 = c5_arm * t178 + s5_arm * t179;
-        let t304 = c5_arm * t179 - s5_arm * t178;
-        let t305 = t301 * t304;
-        let t306 = t305 - t185;
-        let t308 = t301 * t301;
-        let t309 = t172 + joint_velocities[4];
-        let t310 = t309 * t309;
-        let t311 = t308 + t310;
-        let t314 = t304 * t309;
-        let t319 = c5_arm * t174 - s5_arm * t90 + joint_velocities[4] * t304;
-        let t320 = t314 - t319;
-        let t324 = t233 - 0.39 * t224;
-        let t327 = t75 + 0.39 * t215;
-        let t329 = s5_arm * t324 + c5_arm * t327;
-        let t331 = parameters[51] * t306 - parameters[52] * t311 + parameters[53] * t320
-            - parameters[54] * t329;
-        let t335 = c5_arm * t293 + s5_arm * t296;
-        let t336 = t305 + t185;
-        let t338 = t304 * t304;
-        let t342 = t301 * t309;
-        let t347 = s5_arm * t174 + c5_arm * t90 + joint_velocities[4] * t301;
-        let t348 = t342 - t347;
-        let t353 = c5_arm * t324 - s5_arm * t327;
-        let t355 = parameters[52] * t336 - parameters[51] * (t338 + t310)
-            + parameters[53] * t348 + parameters[54] * t353;
-        let t358 = t342 + t347;
-        let t360 = t314 + t319;
-        let t366 = 0.39 * t270 - t207;
-        let t368 = parameters[51] * t358 + parameters[52] * t360 - parameters[53] * t270
-            - parameters[54] * t366;
-        let t373 = t166 * c5_arm - t79 * s5_arm;
-        let t383 = parameters[45] * t319 - parameters[46] * t358 + parameters[47] * t306
-            - parameters[48] * t314 + parameters[49] * (t338 - t310);
-        let t389 = t383 + parameters[50] * t314 - parameters[52] * t366
-            + parameters[53] * t329;
-        let t393 = t166 * s5_arm + t79 * c5_arm;
-        let t403 = parameters[45] * t342 + parameters[46] * t360
-            + parameters[47] * (t310 - t308) - parameters[48] * t347
-            - parameters[49] * t336;
-        let t409 = t403 - parameters[50] * t342 + parameters[51] * t366
-            + parameters[53] * t353;
-        let t421 = parameters[46] * (t308 - t338) - parameters[45] * t305
-            - parameters[47] * t320 + parameters[48] * t305 + parameters[49] * t348;
-        let t427 = t421 - parameters[50] * t185 - parameters[51] * t329
-            - parameters[52] * t353;
-        let t430 = t298 * t331 - t335 * t355 - t268 * t368 + t373 * t389 - t393 * t409
-            + t213 * t427;
-        let t436 = s6_arm * t335 - c6_arm * t268;
-        let t439 = c6_arm * t301 + s6_arm * t309;
-        let t442 = c6_arm * t309 - s6_arm * t301;
-        let t443 = t439 * t442;
-        let t444 = t443 + t347;
-        let t446 = t439 * t439;
-        let t447 = joint_velocities[5] - t304;
-        let t448 = t447 * t447;
-        let t449 = t446 + t448;
-        let t452 = t442 * t447;
-        let t457 = c6_arm * t319 - s6_arm * t185 + joint_velocities[5] * t442;
-        let t458 = t452 - t457;
-        let t463 = s6_arm * t353 + c6_arm * t366;
-        let t465 = parameters[65] * t444 - parameters[66] * t449 + parameters[67] * t458
-            - parameters[68] * t463;
-        let t469 = c6_arm * t335 + s6_arm * t268;
-        let t470 = t443 - t347;
-        let t472 = t442 * t442;
-        let t476 = t439 * t447;
-        let t481 = s6_arm * t319 + c6_arm * t185 + joint_velocities[5] * t439;
-        let t482 = t476 - t481;
-        let t487 = c6_arm * t353 - s6_arm * t366;
-        let t489 = parameters[66] * t470 - parameters[65] * (t472 + t448)
-            + parameters[67] * t482 + parameters[68] * t487;
-        let t492 = t476 + t481;
-        let t494 = t452 + t457;
-        let t500 = parameters[65] * t492 + parameters[66] * t494 - parameters[67] * t311
-            + parameters[68] * t329;
-        let t505 = t373 * c6_arm + t213 * s6_arm;
-        let t515 = parameters[59] * t457 - parameters[60] * t492 + parameters[61] * t444
-            - parameters[62] * t452 + parameters[63] * (t472 - t448);
-        let t521 = t515 + parameters[64] * t452 + parameters[66] * t329
-            + parameters[67] * t463;
-        let t525 = t213 * c6_arm - t373 * s6_arm;
-        let t535 = parameters[59] * t476 + parameters[60] * t494
-            + parameters[61] * (t448 - t446) - parameters[62] * t481
-            - parameters[63] * t470;
-        let t541 = t535 - parameters[64] * t476 - parameters[65] * t329
-            + parameters[67] * t487;
-        let t553 = parameters[60] * (t446 - t472) - parameters[59] * t443
-            - parameters[61] * t458 + parameters[62] * t443 + parameters[63] * t482;
-        let t559 = t553 + parameters[64] * t347 - parameters[65] * t463
-            - parameters[66] * t487;
-        let t562 = t436 * t465 - t469 * t489 - t298 * t500 + t505 * t521 + t525 * t541
-            + t393 * t559;
-        let t571 = c7_arm * t439 - s7_arm * t447;
-        let t574 = s7_arm * t439 + c7_arm * t447;
-        let t575 = t571 * t574;
-        let t576 = t481 - t575;
-        let t578 = t574 * t574;
-        let t579 = t442 + joint_velocities[6];
-        let t580 = t579 * t579;
-        let t584 = t571 * t579;
-        let t589 = s7_arm * t457 + c7_arm * t347 + joint_velocities[6] * t571;
-        let t590 = t584 - t589;
-        let t595 = c7_arm * t487 - s7_arm * t329;
-        let t597 = parameters[80] * t576 - parameters[79] * (t578 + t580)
-            + parameters[81] * t590 + parameters[82] * t595;
-        let t602 = t575 + t481;
-        let t604 = t571 * t571;
-        let t608 = t574 * t579;
-        let t613 = c7_arm * t457 - s7_arm * t347 - joint_velocities[6] * t574;
-        let t614 = t608 + t613;
-        let t619 = s7_arm * t487 + c7_arm * t329;
-        let t621 = parameters[79] * t602 + parameters[80] * (t604 + t580)
-            + parameters[81] * t614 + parameters[82] * t619;
-        let t624 = t584 + t589;
-        let t626 = t613 - t608;
-        let t632 = parameters[79] * t624 + parameters[80] * t626 - parameters[81] * t449
-            - parameters[82] * t463;
-        let t634 = (s7_arm * t298 - c7_arm * t469) * t597
-            - (s7_arm * t469 + c7_arm * t298) * t621 + t436 * t632;
-        let t647 = parameters[73] * t613 - parameters[74] * t624 - parameters[75] * t602
-            + parameters[76] * t608 + parameters[77] * (t578 - t580);
-        let t653 = t647 - parameters[78] * t608 - parameters[80] * t463
-            + parameters[81] * t619;
-        let t667 = parameters[73] * t584 + parameters[74] * t626
-            + parameters[75] * (t580 - t604) - parameters[76] * t589
-            - parameters[77] * t576;
-        let t673 = t667 - parameters[78] * t584 + parameters[79] * t463
-            + parameters[81] * t595;
-        let t685 = parameters[73] * t575 + parameters[74] * (t604 - t578)
-            + parameters[75] * t614 - parameters[76] * t575 + parameters[77] * t590;
-        let t691 = t685 - parameters[78] * t481 - parameters[79] * t619
-            - parameters[80] * t595;
-        let t693 = (t505 * c7_arm - t393 * s7_arm) * t653
-            - (t505 * s7_arm + t393 * c7_arm) * t673 + t525 * t691;
-        let t705 = parameters[6] * (t31 - t19) - parameters[5] * t14
-            + parameters[8] * t14 + parameters[11] * t114 - parameters[12] * t70;
-        let t711 = 0.4 * c3_arm;
-        let t713 = 0.4 * s3_arm;
-        let t720 = t705 + joint_velocities[1] * parameters[14]
+        let t47 = c3_arm * t7;
+        let t50 = s3_arm * t9 + c3_arm * joint_velocities[1];
+        let t52 = t47 - joint_velocities[2] * t50;
+        let t56 = c3_arm * t9 - s3_arm * joint_velocities[1];
+        let t57 = t6 + joint_velocities[2];
+        let t58 = t56 * t57;
+        let t59 = s3_arm * t7;
+        let t61 = t59 + joint_velocities[2] * t56;
+        let t65 = t56 * t50;
+        let t66 = t65 + t10;
+        let t69 = t50 * t57;
+        let t72 = t50 * t50;
+        let t73 = t57 * t57;
+        let t76 = parameters[17] * t52 - parameters[18] * (t58 + t61)
+            - parameters[19] * t66 + parameters[20] * t69 + parameters[21] * (t72 - t73);
+        let t79 = 9.81 * c2_arm;
+        let t82 = t79 - 0.4 * (t31 + t20);
+        let t85 = 9.81 * s2_arm;
+        let t87 = t85 + 0.4 * t14;
+        let t90 = s3_arm * t87 + 0.8 * t47;
+        let t94 = t56 * t56;
+        let t95 = t94 + t73;
+        let t98 = t69 + t52;
+        let t104 = t76 - parameters[22] * t69 + parameters[24] * t82
+            + parameters[25] * t90
+            + 0.4
+                * (parameters[23] * t66 + parameters[24] * t95 + parameters[25] * t98
+                    + parameters[26] * t90);
+        let t106 = s2_arm * s3_arm;
+        let t116 = t10 - t65;
+        let t118 = parameters[17] * t58 + parameters[18] * (t52 - t69)
+            + parameters[19] * (t73 - t94) - parameters[20] * t61
+            - parameters[21] * t116;
+        let t125 = c3_arm * t87 - 0.8 * t59;
+        let t132 = t58 - t61;
+        let t138 = t118 - parameters[22] * t58 - parameters[23] * t82
+            + parameters[25] * t125
+            + 0.4
+                * (parameters[24] * t116 - parameters[23] * (t72 + t73)
+                    + parameters[25] * t132 + parameters[26] * t125);
+        let t150 = parameters[17] * t65 + parameters[18] * (t94 - t72)
+            + parameters[19] * t98 - parameters[20] * t65 + parameters[21] * t132;
+        let t156 = t150 - parameters[22] * t10 - parameters[23] * t90
+            - parameters[24] * t125;
+        let t164 = t46 * c4_arm - c2_arm * s4_arm;
+        let t170 = s4_arm * t56 + c4_arm * t57;
+        let t172 = c4_arm * t52 + s4_arm * t10 - joint_velocities[3] * t170;
+        let t176 = c4_arm * t56 - s4_arm * t57;
+        let t177 = joint_velocities[3] - t50;
+        let t178 = t176 * t177;
+        let t183 = c4_arm * t10 - s4_arm * t52 - joint_velocities[3] * t176;
+        let t184 = t178 - t183;
+        let t187 = t176 * t170;
+        let t188 = t187 + t61;
+        let t191 = t170 * t177;
+        let t194 = t170 * t170;
+        let t195 = t177 * t177;
+        let t198 = parameters[31] * t172 - parameters[32] * t184 - parameters[33] * t188
+            + parameters[34] * t191 + parameters[35] * (t194 - t195);
+        let t205 = s4_arm * t125 + c4_arm * t82;
+        let t208 = 0.4 * c4_arm;
+        let t210 = t172 - t191;
+        let t216 = parameters[37] * t184 + parameters[38] * t210 - parameters[39] * t95
+            - parameters[40] * t90;
+        let t218 = t198 - parameters[36] * t191 - parameters[38] * t90
+            + parameters[39] * t205 - t208 * t216;
+        let t222 = t46 * s4_arm + c2_arm * c4_arm;
+        let t226 = t176 * t176;
+        let t232 = t61 - t187;
+        let t234 = parameters[31] * t178 + parameters[32] * t210
+            + parameters[33] * (t195 - t226) + parameters[34] * t183
+            - parameters[35] * t232;
+        let t241 = c4_arm * t125 - s4_arm * t82;
+        let t244 = 0.4 * s4_arm;
+        let t246 = t234 - parameters[36] * t178 + parameters[37] * t90
+            + parameters[39] * t241 + t244 * t216;
+        let t253 = t191 + t172;
+        let t258 = t178 + t183;
+        let t260 = parameters[31] * t187 + parameters[32] * (t226 - t194)
+            + parameters[33] * t253 - parameters[34] * t187 + parameters[35] * t258;
+        let t266 = t260 - parameters[36] * t61 - parameters[37] * t205
+            - parameters[38] * t241;
+        let t268 = t226 + t195;
+        let t285 = t244
+            * (parameters[37] * t188 + parameters[38] * t268 + parameters[39] * t253
+                + parameters[40] * t205)
+            + t208
+                * (parameters[38] * t232 - parameters[37] * (t194 + t195)
+                    + parameters[39] * t258 + parameters[40] * t241);
+        let t286 = t266 + t285;
+        let t289 = t43 + t46 * t104 - t106 * t138 + c2_arm * t156 + t164 * t218
+            - t222 * t246 - t106 * t286;
+        let t294 = t164 * c5_arm - t106 * s5_arm;
+        let t300 = c5_arm * t177 - s5_arm * t176;
+        let t302 = c5_arm * t172 - s5_arm * t61 + joint_velocities[4] * t300;
+        let t306 = c5_arm * t176 + s5_arm * t177;
+        let t307 = t170 + joint_velocities[4];
+        let t308 = t306 * t307;
+        let t313 = s5_arm * t172 + c5_arm * t61 + joint_velocities[4] * t306;
+        let t314 = t308 + t313;
+        let t317 = t306 * t300;
+        let t318 = t317 - t183;
+        let t321 = t300 * t307;
+        let t324 = t300 * t300;
+        let t325 = t307 * t307;
+        let t328 = parameters[45] * t302 - parameters[46] * t314 + parameters[47] * t318
+            - parameters[48] * t321 + parameters[49] * (t324 - t325);
+        let t332 = 0.39 * t268 - t205;
+        let t336 = t241 - 0.39 * t232;
+        let t339 = t90 + 0.39 * t210;
+        let t341 = s5_arm * t336 + c5_arm * t339;
+        let t343 = t328 + parameters[50] * t321 - parameters[52] * t332
+            + parameters[53] * t341;
+        let t344 = 0.39 * s4_arm;
+        let t345 = s5_arm * t344;
+        let t346 = 1.0256410256410255 * t345;
+        let t348 = t321 + t302;
+        let t354 = parameters[51] * t314 + parameters[52] * t348 - parameters[53] * t268
+            - parameters[54] * t332;
+        let t356 = t208 + 0.39;
+        let t358 = t306 * t306;
+        let t359 = t358 + t325;
+        let t362 = t321 - t302;
+        let t366 = parameters[51] * t318 - parameters[52] * t359 + parameters[53] * t362
+            - parameters[54] * t341;
+        let t369 = t343 + t346 * t354 - t356 * t366;
+        let t373 = t164 * s5_arm + t106 * c5_arm;
+        let t382 = t317 + t183;
+        let t384 = parameters[45] * t308 + parameters[46] * t348
+            + parameters[47] * (t325 - t358) - parameters[48] * t313
+            - parameters[49] * t382;
+        let t391 = c5_arm * t336 - s5_arm * t339;
+        let t393 = t384 - parameters[50] * t308 + parameters[51] * t332
+            + parameters[53] * t391;
+        let t398 = t308 - t313;
+        let t402 = parameters[52] * t382 - parameters[51] * (t324 + t325)
+            + parameters[53] * t398 + parameters[54] * t391;
+        let t404 = c5_arm * t344;
+        let t405 = 1.0256410256410255 * t404;
+        let t408 = t393 + t356 * t402 + t405 * t354;
+        let t420 = parameters[46] * (t358 - t324) - parameters[45] * t317
+            - parameters[47] * t362 + parameters[48] * t317 + parameters[49] * t398;
+        let t426 = t420 - parameters[50] * t183 - parameters[51] * t341
+            - parameters[52] * t391;
+        let t430 = t426 - (t405 * t366 + t346 * t402);
+        let t438 = t294 * c6_arm + t222 * s6_arm;
+        let t444 = c6_arm * t307 - s6_arm * t306;
+        let t446 = c6_arm * t302 - s6_arm * t183 + joint_velocities[5] * t444;
+        let t450 = c6_arm * t306 + s6_arm * t307;
+        let t451 = joint_velocities[5] - t300;
+        let t452 = t450 * t451;
+        let t457 = s6_arm * t302 + c6_arm * t183 + joint_velocities[5] * t450;
+        let t458 = t452 + t457;
+        let t461 = t450 * t444;
+        let t462 = t461 + t313;
+        let t465 = t444 * t451;
+        let t468 = t444 * t444;
+        let t469 = t451 * t451;
+        let t472 = parameters[59] * t446 - parameters[60] * t458 + parameters[61] * t462
+            - parameters[62] * t465 + parameters[63] * (t468 - t469);
+        let t479 = s6_arm * t391 + c6_arm * t332;
+        let t481 = t472 + parameters[64] * t465 + parameters[66] * t341
+            + parameters[67] * t479;
+        let t482 = 2.5641025641025643 * t404;
+        let t483 = s6_arm * t482;
+        let t486 = 0.4 * t483 + c6_arm * t356;
+        let t488 = t465 + t446;
+        let t494 = parameters[65] * t458 + parameters[66] * t488 - parameters[67] * t359
+            + parameters[68] * t341;
+        let t497 = t450 * t450;
+        let t498 = t497 + t469;
+        let t501 = t465 - t446;
+        let t505 = parameters[65] * t462 - parameters[66] * t498 + parameters[67] * t501
+            - parameters[68] * t479;
+        let t508 = t481 + t486 * t494 + t346 * t505;
+        let t512 = t222 * c6_arm - t294 * s6_arm;
+        let t521 = t461 - t313;
+        let t523 = parameters[59] * t452 + parameters[60] * t488
+            + parameters[61] * (t469 - t497) - parameters[62] * t457
+            - parameters[63] * t521;
+        let t530 = c6_arm * t391 - s6_arm * t332;
+        let t532 = t523 - parameters[64] * t452 - parameters[65] * t341
+            + parameters[67] * t530;
+        let t537 = t452 - t457;
+        let t541 = parameters[66] * t521 - parameters[65] * (t468 + t469)
+            + parameters[67] * t537 + parameters[68] * t530;
+        let t544 = c6_arm * t482;
+        let t546 = s6_arm * t356 - 0.4 * t544;
+        let t549 = t532 - (t346 * t541 + t546 * t494);
+        let t561 = parameters[60] * (t497 - t468) - parameters[59] * t461
+            - parameters[61] * t501 + parameters[62] * t461 + parameters[63] * t537;
+        let t567 = t561 + parameters[64] * t313 - parameters[65] * t479
+            - parameters[66] * t530;
+        let t571 = t567 + t546 * t505 - t486 * t541;
+        let t574 = t289 + t294 * t369 - t373 * t408 + t222 * t430 + t438 * t508
+            + t512 * t549 + t373 * t571;
+        let t585 = s7_arm * t450 + c7_arm * t451;
+        let t587 = c7_arm * t446 - s7_arm * t313 - joint_velocities[6] * t585;
+        let t591 = c7_arm * t450 - s7_arm * t451;
+        let t592 = t444 + joint_velocities[6];
+        let t593 = t591 * t592;
+        let t598 = s7_arm * t446 + c7_arm * t313 + joint_velocities[6] * t591;
+        let t599 = t593 + t598;
+        let t602 = t591 * t585;
+        let t603 = t602 + t457;
+        let t606 = t585 * t592;
+        let t609 = t585 * t585;
+        let t610 = t592 * t592;
+        let t613 = parameters[73] * t587 - parameters[74] * t599 - parameters[75] * t603
+            + parameters[76] * t606 + parameters[77] * (t609 - t610);
+        let t620 = s7_arm * t530 + c7_arm * t341;
+        let t622 = t613 - parameters[78] * t606 - parameters[80] * t479
+            + parameters[81] * t620;
+        let t623 = 2.5641025641025643 * t345;
+        let t624 = c7_arm * t623;
+        let t627 = 0.4 * t624 - s7_arm * t546;
+        let t629 = t587 - t606;
+        let t635 = parameters[79] * t599 + parameters[80] * t629 - parameters[81] * t498
+            - parameters[82] * t479;
+        let t638 = t591 * t591;
+        let t642 = t606 + t587;
+        let t646 = parameters[79] * t603 + parameters[80] * (t638 + t610)
+            + parameters[81] * t642 + parameters[82] * t620;
+        let t649 = t622 + t627 * t635 + t486 * t646;
+        let t662 = t457 - t602;
+        let t664 = parameters[73] * t593 + parameters[74] * t629
+            + parameters[75] * (t610 - t638) - parameters[76] * t598
+            - parameters[77] * t662;
+        let t671 = c7_arm * t530 - s7_arm * t341;
+        let t673 = t664 - parameters[78] * t593 + parameters[79] * t479
+            + parameters[81] * t671;
+        let t678 = t593 - t598;
+        let t682 = parameters[80] * t662 - parameters[79] * (t609 + t610)
+            + parameters[81] * t678 + parameters[82] * t671;
+        let t685 = s7_arm * t623;
+        let t687 = c7_arm * t546 + 0.4 * t685;
+        let t690 = t673 + t486 * t682 - t687 * t635;
+        let t702 = parameters[73] * t602 + parameters[74] * (t638 - t609)
+            + parameters[75] * t642 - parameters[76] * t602 + parameters[77] * t678;
+        let t708 = t702 - parameters[78] * t457 - parameters[79] * t620
+            - parameters[80] * t671;
+        let t712 = t708 - (t687 * t646 + t627 * t682);
+        let t714 = (t438 * c7_arm - t373 * s7_arm) * t649
+            - (t438 * s7_arm + t373 * c7_arm) * t690 + t512 * t712;
+        let t725 = parameters[6] * (t31 - t19) - parameters[5] * t14
+            + parameters[8] * t14 + parameters[11] * t79 - parameters[12] * t85;
+        let t735 = s3_arm * s4_arm;
+        let t737 = s3_arm * c4_arm;
+        let t742 = t725 + joint_velocities[1] * parameters[14]
             + ::overact::math::signed(parameters[15], joint_velocities[1])
-            + parameters[16] - (t711 * t98 + t713 * t77 + s3_arm * t121 + c3_arm * t139);
-        let t722 = c4_arm * t711;
-        let t724 = s4_arm * t711;
-        let t728 = s3_arm * s4_arm;
-        let t730 = s3_arm * c4_arm;
-        let t735 = t713 * t285 - (t722 * t266 + t724 * t276) + t728 * t235 - t730 * t209
-            - c3_arm * t255;
-        let t738 = t713 + 0.39 * t730;
-        let t741 = t722 + 0.39 * c3_arm;
-        let t743 = s5_arm * t738 - c5_arm * t741;
-        let t747 = s5_arm * t741 + c5_arm * t738;
-        let t754 = s5_arm * t730 - c3_arm * c5_arm;
-        let t758 = c5_arm * t730 + c3_arm * s5_arm;
-        let t763 = t743 * t355 + t747 * t331 - t724 * t368 + t754 * t409 - t758 * t389
-            - t728 * t427;
-        let t767 = c6_arm * t743 - s6_arm * t724;
-        let t771 = s6_arm * t743 + c6_arm * t724;
-        let t778 = s6_arm * t758 - c6_arm * t728;
-        let t782 = c6_arm * t758 + s6_arm * t728;
-        let t787 = t767 * t489 - t771 * t465 - t747 * t500 + t778 * t541 - t782 * t521
-            - t754 * t559;
-        let t799 = (c7_arm * t767 + s7_arm * t747) * t597
-            - (c7_arm * t747 - s7_arm * t767) * t621 - t771 * t632;
-        let t810 = (s7_arm * t754 - c7_arm * t782) * t653
-            + (s7_arm * t782 + c7_arm * t754) * t673 + t778 * t691;
-        let t822 = 0.39 * s4_arm;
-        let t823 = s5_arm * t822;
-        let t825 = c5_arm * t822;
-        let t828 = 2.5641025641025643 * t823;
-        let t830 = 2.5641025641025643 * t825;
-        let t836 = t157 + joint_velocities[2] * parameters[28]
+            + parameters[16] - (s3_arm * t104 + c3_arm * t138) + t735 * t246
+            - t737 * t218 - c3_arm * t286;
+        let t745 = s5_arm * t737 - c3_arm * c5_arm;
+        let t749 = c5_arm * t737 + c3_arm * s5_arm;
+        let t757 = s6_arm * t749 - c6_arm * t735;
+        let t761 = c6_arm * t749 + s6_arm * t735;
+        let t766 = t742 + t745 * t408 - t749 * t369 - t735 * t430 + t757 * t549
+            - t761 * t508 - t745 * t571;
+        let t777 = (s7_arm * t745 - c7_arm * t761) * t649
+            + (s7_arm * t761 + c7_arm * t745) * t690 + t757 * t712;
+        let t793 = t156 + joint_velocities[2] * parameters[28]
             + ::overact::math::signed(parameters[29], joint_velocities[2])
-            + parameters[30] - (s4_arm * t209 + c4_arm * t235) + t823 * t355
-            + t825 * t331 + t828 * t409 - t830 * t389 + c4_arm * t427;
-        let t839 = s6_arm * t823;
-        let t846 = c4_arm * s6_arm - c6_arm * t830;
-        let t850 = s6_arm * t830 + c4_arm * c6_arm;
-        let t855 = c6_arm * t823 * t489 - t839 * t465 - t825 * t500 + t846 * t521
-            + t850 * t541 - t828 * t559;
-        let t857 = s5_arm * c6_arm;
-        let t860 = c7_arm * t857 + c5_arm * s7_arm;
-        let t865 = c5_arm * c7_arm - s7_arm * t857;
-        let t881 = (c7_arm * t846 + s7_arm * t828) * t653
-            + (c7_arm * t828 - s7_arm * t846) * t673 + t850 * t691;
-        let t883 = t836 + t855 + t822 * t860 * t597 - t822 * t865 * t621 - t839 * t632
-            + t881;
-        let t889 = 0.39 * c5_arm;
-        let t891 = 0.39 * s5_arm;
-        let t898 = t255 + joint_velocities[3] * parameters[42]
+            + parameters[30] - (s4_arm * t218 + c4_arm * t246) + t623 * t408
+            - t482 * t369 + c4_arm * t430;
+        let t795 = c4_arm * s6_arm - t544;
+        let t798 = t483 + c4_arm * c6_arm;
+        let t813 = t793 + t795 * t508 + t798 * t549 - t623 * t571
+            + (c7_arm * t795 + t685) * t649 + (t624 - s7_arm * t795) * t690
+            + t798 * t712;
+        let t819 = 0.39 * c5_arm;
+        let t821 = 0.39 * s5_arm;
+        let t828 = t266 + joint_velocities[3] * parameters[42]
             + ::overact::math::signed(parameters[43], joint_velocities[3])
-            + parameters[44] + t889 * t355 - t891 * t331 + s5_arm * t389 + c5_arm * t409;
-        let t899 = c6_arm * t889;
-        let t901 = s6_arm * t889;
-        let t907 = s5_arm * s6_arm;
-        let t912 = t899 * t489 - t901 * t465 + t891 * t500 + t857 * t521 - t907 * t541
-            - c5_arm * t559;
-        let t924 = (c7_arm * t899 - s7_arm * t891) * t597
-            + (s7_arm * t899 + c7_arm * t891) * t621 - t901 * t632;
-        let t948 = t427 + joint_velocities[4] * parameters[56]
+            + parameters[44] + t819 * t402 - t821 * t366 + s5_arm * t343 + c5_arm * t393;
+        let t829 = c6_arm * t819;
+        let t831 = s6_arm * t819;
+        let t836 = s5_arm * c6_arm;
+        let t838 = s5_arm * s6_arm;
+        let t843 = t829 * t541 - t831 * t505 + t821 * t494 + t836 * t481 - t838 * t532
+            - c5_arm * t567;
+        let t855 = (c7_arm * t829 - s7_arm * t821) * t682
+            + (s7_arm * t829 + c7_arm * t821) * t646 - t831 * t635;
+        let t866 = (c7_arm * t836 + c5_arm * s7_arm) * t622
+            + (c5_arm * c7_arm - s7_arm * t836) * t673 - t838 * t708;
+        let t885 = t426 + joint_velocities[4] * parameters[56]
             + ::overact::math::signed(parameters[57], joint_velocities[4])
-            + parameters[58] + s6_arm * t521 + c6_arm * t541 + s6_arm * c7_arm * t653
-            - s6_arm * s7_arm * t673 + c6_arm * t691;
+            + parameters[58] + s6_arm * t481 + c6_arm * t532 + s6_arm * c7_arm * t622
+            - s6_arm * s7_arm * t673 + c6_arm * t708;
         [
-            t161 + t288 + t430 + t562 + t634 + t693, t720 + t735 + t763 + t787 + t799 + t810, t883,
-            t898 + t912 + t924 + t860 * t653 + t865 * t673 - t907 * t691, t948,
-            t559 + joint_velocities[5] * parameters[70]
+            t574 + t714, t766 + t777, t813, t828 + t843 + t855 + t866, t885,
+            t567 + joint_velocities[5] * parameters[70]
                 + ::overact::math::signed(parameters[71], joint_velocities[5])
-                + parameters[72] - (s7_arm * t653 + c7_arm * t673),
-            t691 + joint_velocities[6] * parameters[84]
+                + parameters[72] - (s7_arm * t622 + c7_arm * t673),
+            t708 + joint_velocities[6] * parameters[84]
                 + ::overact::math::signed(parameters[85], joint_velocities[6])
                 + parameters[86],
         ]

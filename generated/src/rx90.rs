@@ -137,102 +137,94 @@ impl Rx90 {
                 "zz_1R",
                 "zz_1",
                 &[
-                    ("ia_1", 1.0), ("yy_2", 1.0), ("yy_3", 1.0), ("m_3", 0.2025), ("m_4", 0.2025),
-                    ("m_5", 0.2025), ("m_6", 0.2025),
+                    ("ia_1", 1.0), ("xx_2", 1.0), ("xx_3", 1.0), ("yy_4", 1.0), ("my_3", -0.45),
+                    ("mz_4", 0.45),
                 ],
             ),
             BaseParameter::new("fv_1", "fv_1", &[]),
             BaseParameter::new("fs_1", "fs_1", &[]),
             BaseParameter::new("off_1", "off_1", &[]),
             BaseParameter::new(
-                "xx_2R",
-                "xx_2",
-                &[
-                    ("yy_2", -1.0), ("m_3", -0.2025), ("m_4", -0.2025), ("m_5", -0.2025),
-                    ("m_6", -0.2025),
-                ],
-            ),
-            BaseParameter::new("xy_2", "xy_2", &[]),
-            BaseParameter::new("xz_2R", "xz_2", &[("mz_3", -0.45)]),
-            BaseParameter::new("yz_2", "yz_2", &[]),
-            BaseParameter::new(
                 "zz_2R",
                 "zz_2",
-                &[
-                    ("ia_2", 1.0), ("m_3", 0.2025), ("m_4", 0.2025), ("m_5", 0.2025),
-                    ("m_6", 0.2025),
-                ],
+                &[("ia_2", 1.0), ("m_3", 0.2025), ("my_3", -0.45), ("mz_4", -0.45)],
             ),
-            BaseParameter::new(
-                "mx_2R",
-                "mx_2",
-                &[("m_3", 0.45), ("m_4", 0.45), ("m_5", 0.45), ("m_6", 0.45)],
-            ),
-            BaseParameter::new("my_2", "my_2", &[]),
             BaseParameter::new("fv_2", "fv_2", &[]),
             BaseParameter::new("fs_2", "fs_2", &[]),
             BaseParameter::new("off_2", "off_2", &[]),
-            BaseParameter::new(
-                "xx_3R",
-                "xx_3",
-                &[
-                    ("yy_3", -1.0), ("yy_4", 1.0), ("mz_4", 0.9), ("m_4", 0.2025), ("m_5", 0.2025),
-                    ("m_6", 0.2025),
-                ],
-            ),
-            BaseParameter::new("xy_3", "xy_3", &[]),
-            BaseParameter::new("xz_3", "xz_3", &[]),
-            BaseParameter::new("yz_3", "yz_3", &[]),
-            BaseParameter::new(
-                "zz_3R",
-                "zz_3",
-                &[
-                    ("yy_4", 1.0), ("mz_4", 0.9), ("m_4", 0.2025), ("m_5", 0.2025), ("m_6", 0.2025),
-                ],
-            ),
-            BaseParameter::new("mx_3", "mx_3", &[]),
-            BaseParameter::new(
-                "my_3R",
-                "my_3",
-                &[("mz_4", 1.0), ("m_4", 0.45), ("m_5", 0.45), ("m_6", 0.45)],
-            ),
             BaseParameter::new("ia_3", "ia_3", &[]),
             BaseParameter::new("fv_3", "fv_3", &[]),
             BaseParameter::new("fs_3", "fs_3", &[]),
             BaseParameter::new("off_3", "off_3", &[]),
-            BaseParameter::new("xx_4R", "xx_4", &[("yy_4", -1.0), ("yy_5", 1.0)]),
-            BaseParameter::new("xy_4", "xy_4", &[]),
-            BaseParameter::new("xz_4", "xz_4", &[]),
-            BaseParameter::new("yz_4", "yz_4", &[]),
-            BaseParameter::new("zz_4R", "zz_4", &[("yy_5", 1.0)]),
-            BaseParameter::new("mx_4", "mx_4", &[]),
-            BaseParameter::new("my_4R", "my_4", &[("mz_5", -1.0)]),
             BaseParameter::new("ia_4", "ia_4", &[]),
             BaseParameter::new("fv_4", "fv_4", &[]),
             BaseParameter::new("fs_4", "fs_4", &[]),
             BaseParameter::new("off_4", "off_4", &[]),
-            BaseParameter::new("xx_5R", "xx_5", &[("yy_5", -1.0), ("yy_6", 1.0)]),
-            BaseParameter::new("xy_5", "xy_5", &[]),
-            BaseParameter::new("xz_5", "xz_5", &[]),
-            BaseParameter::new("yz_5", "yz_5", &[]),
-            BaseParameter::new("zz_5R", "zz_5", &[("yy_6", 1.0)]),
-            BaseParameter::new("mx_5", "mx_5", &[]),
-            BaseParameter::new("my_5R", "my_5", &[("mz_6", 1.0)]),
             BaseParameter::new("ia_5", "ia_5", &[]),
             BaseParameter::new("fv_5", "fv_5", &[]),
             BaseParameter::new("fs_5", "fs_5", &[]),
             BaseParameter::new("off_5", "off_5", &[]),
-            BaseParameter::new("xx_6R", "xx_6", &[("yy_6", -1.0)]),
-            BaseParameter::new("xy_6", "xy_6", &[]),
-            BaseParameter::new("xz_6", "xz_6", &[]),
-            BaseParameter::new("yz_6", "yz_6", &[]),
-            BaseParameter::new("zz_6", "zz_6", &[]),
-            BaseParameter::new("mx_6", "mx_6", &[]),
-            BaseParameter::new("my_6", "my_6", &[]),
             BaseParameter::new("ia_6", "ia_6", &[]),
             BaseParameter::new("fv_6", "fv_6", &[]),
             BaseParameter::new("fs_6", "fs_6", &[]),
             BaseParameter::new("off_6", "off_6", &[]),
+            BaseParameter::new(
+                "zz_3R",
+                "zz_3",
+                &[("yy_4", 1.0), ("my_3", -0.45), ("mz_4", 0.45)],
+            ),
+            BaseParameter::new(
+                "mx_2R",
+                "mx_2",
+                &[("m_3", 0.45), ("my_3", -1.0), ("mz_4", -1.0)],
+            ),
+            BaseParameter::new("my_2", "my_2", &[]),
+            BaseParameter::new(
+                "yy_2R",
+                "yy_2",
+                &[("xx_2", -1.0), ("m_3", 0.2025), ("my_3", -0.45), ("mz_4", -0.45)],
+            ),
+            BaseParameter::new("xz_2R", "xz_2", &[("mz_3", -0.45)]),
+            BaseParameter::new(
+                "yy_3R",
+                "yy_3",
+                &[("xx_3", -1.0), ("yy_4", -1.0), ("my_3", 0.45), ("mz_4", -0.45)],
+            ),
+            BaseParameter::new("yz_2", "yz_2", &[]),
+            BaseParameter::new("xy_2", "xy_2", &[]),
+            BaseParameter::new("xy_3", "xy_3", &[]),
+            BaseParameter::new("xz_3", "xz_3", &[]),
+            BaseParameter::new("yz_3", "yz_3", &[]),
+            BaseParameter::new(
+                "m_4R",
+                "m_4",
+                &[
+                    ("m_5", 1.0), ("m_6", 1.0), ("my_3", 2.2222222222222223),
+                    ("mz_4", 2.2222222222222223),
+                ],
+            ),
+            BaseParameter::new("zz_4R", "zz_4", &[("yy_5", 1.0)]),
+            BaseParameter::new("xx_4R", "xx_4", &[("yy_4", -1.0), ("yy_5", 1.0)]),
+            BaseParameter::new("yz_4", "yz_4", &[]),
+            BaseParameter::new("xz_4", "xz_4", &[]),
+            BaseParameter::new("xy_4", "xy_4", &[]),
+            BaseParameter::new("mx_3", "mx_3", &[]),
+            BaseParameter::new("zz_5R", "zz_5", &[("yy_6", 1.0)]),
+            BaseParameter::new("xx_5R", "xx_5", &[("yy_5", -1.0), ("yy_6", 1.0)]),
+            BaseParameter::new("my_4R", "my_4", &[("mz_5", -1.0)]),
+            BaseParameter::new("xy_5", "xy_5", &[]),
+            BaseParameter::new("xz_5", "xz_5", &[]),
+            BaseParameter::new("yz_5", "yz_5", &[]),
+            BaseParameter::new("zz_6", "zz_6", &[]),
+            BaseParameter::new("xx_6R", "xx_6", &[("yy_6", -1.0)]),
+            BaseParameter::new("my_5R", "my_5", &[("mz_6", 1.0)]),
+            BaseParameter::new("mx_4", "mx_4", &[]),
+            BaseParameter::new("xz_6", "xz_6", &[]),
+            BaseParameter::new("yz_6", "yz_6", &[]),
+            BaseParameter::new("xy_6", "xy_6", &[]),
+            BaseParameter::new("mx_5", "mx_5", &[]),
+            BaseParameter::new("mx_6", "mx_6", &[]),
+            BaseParameter::new("my_6", "my_6", &[]),
         ]
     };
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -365,7 +357,7 @@ impl Rx90 {
     /// Output: 6 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 640 operations (278 additions, 362 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 514 intermediates.
+    /// 640 operations (279 additions, 361 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 514 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 6],
@@ -396,26 +388,27 @@ impl Rx90 {
         let t34 = 9.81 * s2_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t44 = joint_velocities[0] * c23_arm;
+        let t44 = joint_velocities[0] * s23_arm;
         let t45 = joint_velocities[1] + joint_velocities[2];
         let t46 = t44 * t45;
-        let t51 = c3_arm * t14 + s3_arm * t6 + joint_velocities[2] * t44;
-        let t52 = t46 + t51;
-        let t53 = s23_arm * t52;
-        let t54 = joint_velocities[0] * s23_arm;
-        let t55 = t54 * t44;
-        let t57 = t54 * t45;
-        let t62 = c3_arm * t6 - s3_arm * t14 - joint_velocities[2] * t54;
-        let t63 = t57 - t62;
-        let t66 = t54 * t54;
+        let t51 = c3_arm * t6 - s3_arm * t14 - joint_velocities[2] * t44;
+        let t52 = t46 - t51;
+        let t53 = c23_arm * t52;
+        let t54 = joint_accelerations[0] + t53;
+        let t55 = joint_velocities[0] * c23_arm;
+        let t56 = t44 * t55;
+        let t57 = t55 * t45;
+        let t62 = c3_arm * t14 + s3_arm * t6 + joint_velocities[2] * t55;
+        let t63 = t57 + t62;
         let t67 = t44 * t44;
-        let t68 = t66 - t67;
-        let t69 = joint_accelerations[1] + joint_accelerations[2];
-        let t70 = t55 + t69;
-        let t72 = t45 * t45;
-        let t76 = t46 - t51;
-        let t80 = t55 - t69;
-        let t83 = t57 + t62;
+        let t68 = t55 * t55;
+        let t69 = t67 - t68;
+        let t70 = joint_accelerations[1] + joint_accelerations[2];
+        let t71 = t56 + t70;
+        let t73 = t45 * t45;
+        let t77 = t57 - t62;
+        let t80 = t56 - t70;
+        let t83 = t46 + t51;
         let t84 = 0.45 * c2_arm;
         let t86 = 0.45 * t7;
         let t89 = 0.45 * c3_arm;
@@ -423,246 +416,245 @@ impl Rx90 {
         let t96 = t33 + 0.45 * t22;
         let t100 = t34 - 0.45 * (t20 + t24);
         let t102 = c3_arm * t96 - s3_arm * t100;
-        let t106 = s23_arm * t86 - t84 * t52;
-        let t108 = t66 + t72;
-        let t110 = t91 * t80 - t89 * t108;
-        let t113 = c3_arm * t100 + s3_arm * t96;
-        let t122 = s23_arm * c4_arm;
-        let t128 = s4_arm * t54 + c4_arm * t45;
-        let t130 = c4_arm * t51 - s4_arm * t69 - joint_velocities[3] * t128;
+        let t107 = 0.45 * t80;
+        let t108 = t91 - 0.45;
+        let t110 = t67 + t73;
+        let t112 = t80 * t108 - t89 * t110;
+        let t116 = c3_arm * t100 + s3_arm * t96;
+        let t125 = s23_arm * c4_arm;
+        let t128 = s4_arm * t44 + c4_arm * t45;
+        let t129 = t55 + joint_velocities[3];
+        let t130 = t128 * t129;
+        let t131 = t125 * t130;
         let t132 = s23_arm * s4_arm;
-        let t135 = c4_arm * t54 - s4_arm * t45;
-        let t136 = t44 + joint_velocities[3];
-        let t137 = t135 * t136;
-        let t138 = t132 * t137;
-        let t140 = t135 * t128;
-        let t142 = t122 * t130 - t138 + c23_arm * t140;
-        let t145 = s4_arm * t130 + c4_arm * t137;
-        let t146 = t135 * t135;
-        let t147 = t128 * t128;
-        let t148 = t146 - t147;
-        let t150 = t145 - t80;
-        let t158 = s4_arm * t51 + c4_arm * t69 + joint_velocities[3] * t135;
-        let t159 = t137 + t158;
-        let t161 = t128 * t136;
-        let t162 = t130 - t161;
-        let t164 = s4_arm * t159 - c4_arm * t162;
-        let t165 = t62 + joint_accelerations[3];
-        let t166 = t165 - t140;
-        let t168 = t136 * t136;
-        let t169 = t168 - t146;
-        let t172 = t161 + t130;
-        let t175 = s4_arm * t166;
-        let t177 = t175 + c4_arm * t169;
-        let t179 = t147 - t168;
-        let t181 = t140 + t165;
-        let t184 = t137 - t158;
-        let t188 = c4_arm * t181;
-        let t189 = s4_arm * t179 + t188;
-        let t193 = t138 - t122 * t161 + c23_arm * t165;
-        let t194 = t54 * t136;
-        let t196 = 0.45 * (s23_arm - c2_arm);
-        let t197 = s4_arm * t196;
-        let t198 = t147 + t168;
-        let t200 = c4_arm * t196;
-        let t204 = t102 - 0.45 * t108;
-        let t206 = 0.45 * t80;
-        let t207 = t113 + t206;
-        let t210 = 0.45 * (t7 + t52);
-        let t212 = s4_arm * t207 + c4_arm * t210;
-        let t217 = 0.45 * c4_arm;
-        let t220 = t217 * t198 + 0.45 * t175;
-        let t221 = 1.0 - s3_arm;
-        let t224 = c4_arm * t204;
-        let t228 = t146 + t168;
-        let t234 = c4_arm * t207 - s4_arm * t210;
-        let t237 = t197 * t181 + t200 * t228 + t122 * t204 - c23_arm * t234;
-        let t239 = 0.45 * s4_arm;
-        let t241 = 0.45 * t188 - t239 * t228;
-        let t245 = s4_arm * t204;
-        let t246 = t241 * t221 + t89 * t162 - t245;
-        let t247 = t241 - t245;
-        let t250 = t206 + t207;
-        let t252 = t196 * t210;
-        let t253 = t91 - 0.45;
-        let t256 = t207 * t253 + t89 * t204;
-        let t257 = 0.45 * t207;
-        let t263 = t122 * c5_arm + c23_arm * s5_arm;
-        let t269 = c5_arm * t136 - s5_arm * t135;
-        let t271 = c5_arm * t130 + s5_arm * t165 + joint_velocities[4] * t269;
-        let t275 = c23_arm * c5_arm - t122 * s5_arm;
-        let t278 = c5_arm * t135 + s5_arm * t136;
-        let t279 = t128 + joint_velocities[4];
-        let t280 = t278 * t279;
-        let t281 = t275 * t280;
-        let t283 = t278 * t269;
-        let t285 = t263 * t271 + t281 - t132 * t283;
-        let t286 = s4_arm * s5_arm;
-        let t287 = t286 * t280;
-        let t288 = s4_arm * c5_arm;
-        let t292 = t287 - t271 * t288 - c4_arm * t283;
-        let t295 = s5_arm * t271 + c5_arm * t280;
-        let t296 = t269 * t279;
-        let t297 = t296 + t271;
-        let t303 = c5_arm * t165 - s5_arm * t130 - joint_velocities[4] * t278;
-        let t304 = t280 - t303;
-        let t307 = t278 * t278;
-        let t308 = t269 * t269;
-        let t309 = t307 - t308;
-        let t312 = t181 - t295;
-        let t316 = s4_arm * (t295 - t312) + c4_arm * t309;
-        let t320 = t158 + joint_accelerations[4];
-        let t321 = t283 + t320;
-        let t323 = t279 * t279;
-        let t324 = t323 - t307;
-        let t327 = t296 - t271;
-        let t334 = t286 * t324 - t288 * t321 - c4_arm * t327;
-        let t341 = t194 - t145 - t292;
-        let t342 = t308 - t323;
-        let t344 = t283 - t320;
-        let t347 = t280 + t303;
-        let t354 = c4_arm * t347 - (t288 * t342 + t286 * t344);
-        let t361 = t263 * t296 - t281 + t132 * t320;
-        let t365 = c4_arm * t320 - (t288 * t296 + t287);
-        let t366 = t135 * t279;
-        let t367 = c5_arm * t197;
-        let t368 = t308 + t323;
-        let t370 = s5_arm * t197;
-        let t377 = c5_arm * t204 - s5_arm * t234;
-        let t383 = c4_arm * t253;
+        let t138 = c4_arm * t44 - s4_arm * t45;
+        let t140 = s4_arm * t62 + c4_arm * t70 + joint_velocities[3] * t138;
+        let t143 = t138 * t128;
+        let t145 = t131 + t132 * t140 - c23_arm * t143;
+        let t146 = t54 - t145;
+        let t147 = t44 * t129;
+        let t148 = t138 * t129;
+        let t149 = t148 + t140;
+        let t151 = c4_arm * t149 - t147;
+        let t152 = t80 + t151;
+        let t153 = t138 * t138;
+        let t154 = t128 * t128;
+        let t155 = t153 - t154;
+        let t165 = c4_arm * t62 - s4_arm * t70 - joint_velocities[3] * t128;
+        let t166 = t165 - t130;
+        let t168 = s4_arm * t149 - c4_arm * t166;
+        let t169 = t51 + joint_accelerations[3];
+        let t170 = t169 - t143;
+        let t172 = t129 * t129;
+        let t173 = t172 - t153;
+        let t176 = t130 + t165;
+        let t179 = s4_arm * t170;
+        let t181 = t179 + c4_arm * t173;
+        let t182 = t154 - t172;
+        let t184 = t143 + t169;
+        let t187 = t148 - t140;
+        let t191 = c4_arm * t184;
+        let t192 = s4_arm * t182 + t191;
+        let t196 = t132 * t148 - t131 + c23_arm * t169;
+        let t198 = 0.45 * (s23_arm - c2_arm);
+        let t199 = s4_arm * t198;
+        let t200 = t154 + t172;
+        let t202 = c4_arm * t198;
+        let t206 = t102 - 0.45 * t110;
+        let t208 = t116 + t107;
+        let t211 = 0.45 * (t7 + t63);
+        let t213 = s4_arm * t208 + c4_arm * t211;
+        let t218 = 0.45 * c4_arm;
+        let t221 = t218 * t200 + 0.45 * t179;
+        let t222 = 1.0 - s3_arm;
+        let t225 = c4_arm * t206;
+        let t229 = t153 + t172;
+        let t235 = c4_arm * t208 - s4_arm * t211;
+        let t238 = t199 * t184 + t202 * t229 + t125 * t206 - c23_arm * t235;
+        let t240 = 0.45 * s4_arm;
+        let t242 = 0.45 * t191 - t240 * t229;
+        let t246 = s4_arm * t206;
+        let t247 = t242 * t222 + t89 * t166 - t246;
+        let t248 = t242 - t246;
+        let t254 = t198 * t211;
+        let t257 = t208 * t108 + t89 * t206;
+        let t258 = 0.45 * t208;
+        let t264 = t125 * c5_arm + c23_arm * s5_arm;
+        let t270 = c5_arm * t129 - s5_arm * t138;
+        let t272 = c5_arm * t165 + s5_arm * t169 + joint_velocities[4] * t270;
+        let t276 = c23_arm * c5_arm - t125 * s5_arm;
+        let t279 = c5_arm * t138 + s5_arm * t129;
+        let t280 = t128 + joint_velocities[4];
+        let t281 = t279 * t280;
+        let t282 = t276 * t281;
+        let t284 = t279 * t270;
+        let t286 = t264 * t272 + t282 - t132 * t284;
+        let t287 = s4_arm * s5_arm;
+        let t288 = t287 * t281;
+        let t289 = s4_arm * c5_arm;
+        let t293 = t288 - t272 * t289 - c4_arm * t284;
+        let t294 = t138 * t280;
+        let t299 = c5_arm * t169 - s5_arm * t165 - joint_velocities[4] * t279;
+        let t300 = t281 - t299;
+        let t302 = t294 - c5_arm * t300;
+        let t303 = t184 - t302;
+        let t304 = t270 * t280;
+        let t305 = t304 + t272;
+        let t309 = t279 * t279;
+        let t310 = t270 * t270;
+        let t311 = t309 - t310;
+        let t317 = s4_arm * (t303 - t302) + c4_arm * t311;
+        let t321 = t140 + joint_accelerations[4];
+        let t322 = t284 + t321;
+        let t324 = t280 * t280;
+        let t325 = t324 - t309;
+        let t328 = t304 - t272;
+        let t335 = t287 * t325 - t289 * t322 - c4_arm * t328;
+        let t342 = t293 + t152 - t147;
+        let t343 = t310 - t324;
+        let t345 = t284 - t321;
+        let t348 = t281 + t299;
+        let t355 = c4_arm * t348 - (t289 * t343 + t287 * t345);
+        let t362 = t264 * t304 - t282 + t132 * t321;
+        let t366 = c4_arm * t321 - (t289 * t304 + t288);
+        let t367 = c5_arm * t199;
+        let t368 = t310 + t324;
+        let t370 = s5_arm * t199;
+        let t377 = c5_arm * t206 - s5_arm * t235;
+        let t383 = c4_arm * t108;
         let t385 = c5_arm * t89 - s5_arm * t383;
         let t389 = c5_arm * t383 + s5_arm * t89;
-        let t392 = s4_arm * t253;
-        let t397 = c4_arm * t377 - t212 * t286;
-        let t399 = c5_arm * t217;
-        let t401 = s5_arm * t217;
-        let t410 = t307 + t323;
-        let t417 = c5_arm * t234 + s5_arm * t204;
-        let t420 = t200 * t297 - (t367 * t344 + t370 * t410) + t263 * t212 - t132 * t417;
-        let t428 = t212 * t288 + c4_arm * t417;
-        let t429 = t389 * t344 - t385 * t410 + t392 * t297 - t428;
-        let t435 = t399 * t344 + t401 * t410 + t239 * t297 + t428;
-        let t436 = s5_arm * t212;
-        let t442 = t263 * c6_arm - t132 * s6_arm;
-        let t448 = s6_arm * t278 + c6_arm * t279;
-        let t450 = c6_arm * t271 - s6_arm * t320 - joint_velocities[5] * t448;
-        let t454 = t263 * s6_arm + t132 * c6_arm;
-        let t457 = c6_arm * t278 - s6_arm * t279;
-        let t458 = t269 + joint_velocities[5];
+        let t392 = s4_arm * t108;
+        let t397 = c4_arm * t377 - t213 * t287;
+        let t399 = c5_arm * t218;
+        let t401 = s5_arm * t218;
+        let t410 = t309 + t324;
+        let t417 = c5_arm * t235 + s5_arm * t206;
+        let t420 = t202 * t305 - (t367 * t345 + t370 * t410) + t264 * t213 - t132 * t417;
+        let t428 = t213 * t289 + c4_arm * t417;
+        let t429 = t389 * t345 - t385 * t410 + t392 * t305 - t428;
+        let t435 = t399 * t345 + t401 * t410 + t240 * t305 + t428;
+        let t436 = s5_arm * t213;
+        let t442 = t264 * c6_arm - t132 * s6_arm;
+        let t448 = s6_arm * t279 + c6_arm * t280;
+        let t450 = c6_arm * t272 - s6_arm * t321 - joint_velocities[5] * t448;
+        let t454 = t264 * s6_arm + t132 * c6_arm;
+        let t457 = c6_arm * t279 - s6_arm * t280;
+        let t458 = t270 + joint_velocities[5];
         let t459 = t457 * t458;
         let t460 = t454 * t459;
         let t462 = t457 * t448;
-        let t464 = t442 * t450 - t460 + t275 * t462;
-        let t467 = s6_arm * t288 - c4_arm * c6_arm;
+        let t464 = t442 * t450 - t460 + t276 * t462;
+        let t467 = s6_arm * t289 - c4_arm * c6_arm;
         let t468 = t467 * t459;
-        let t471 = c6_arm * t288 + c4_arm * s6_arm;
-        let t475 = t468 - t450 * t471 + t286 * t462;
+        let t471 = c6_arm * t289 + c4_arm * s6_arm;
+        let t475 = t468 - t450 * t471 + t287 * t462;
         let t476 = s5_arm * c6_arm;
         let t478 = s5_arm * s6_arm;
         let t479 = t478 * t459;
         let t482 = t450 * t476 - t479 + c5_arm * t462;
-        let t483 = t278 * t458;
-        let t484 = t448 * t458;
-        let t485 = t450 - t484;
-        let t487 = t483 + s6_arm * t485;
-        let t488 = t457 * t457;
-        let t489 = t448 * t448;
-        let t490 = t488 - t489;
-        let t496 = s6_arm * t271 + c6_arm * t320 + joint_velocities[5] * t457;
-        let t497 = t459 + t496;
-        let t506 = t471 * t497 + t467 * t485 + t286 * t490;
-        let t508 = t487 - t344;
-        let t515 = t303 + joint_accelerations[5];
+        let t483 = t279 * t458;
+        let t488 = s6_arm * t272 + c6_arm * t321 + joint_velocities[5] * t457;
+        let t489 = t459 + t488;
+        let t491 = c6_arm * t489 - t483;
+        let t492 = t345 + t491;
+        let t493 = t457 * t457;
+        let t494 = t448 * t448;
+        let t495 = t493 - t494;
+        let t498 = t448 * t458;
+        let t499 = t450 - t498;
+        let t507 = t471 * t489 + t467 * t499 + t287 * t495;
+        let t515 = t299 + joint_accelerations[5];
         let t516 = t515 - t462;
         let t518 = t458 * t458;
-        let t519 = t518 - t488;
-        let t522 = t484 + t450;
-        let t529 = t467 * t519 - t471 * t516 + t286 * t522;
-        let t541 = t292 + t365 - t475;
-        let t544 = t489 - t518;
+        let t519 = t518 - t493;
+        let t522 = t498 + t450;
+        let t529 = t467 * t519 - t471 * t516 + t287 * t522;
+        let t541 = t475 - (t293 + t366);
+        let t544 = t494 - t518;
         let t546 = t462 + t515;
-        let t549 = t459 - t496;
-        let t556 = t467 * t546 - t471 * t544 + t286 * t549;
-        let t572 = t471 * t484 - t468 + t286 * t515;
-        let t577 = t196 * t471;
-        let t578 = t489 + t518;
-        let t580 = t196 * t467;
-        let t588 = s6_arm * t417 + c6_arm * t212;
+        let t549 = t459 - t488;
+        let t556 = t467 * t546 - t471 * t544 + t287 * t549;
+        let t572 = t471 * t498 - t468 + t287 * t515;
+        let t577 = t198 * t471;
+        let t578 = t494 + t518;
+        let t580 = t198 * t467;
+        let t588 = s6_arm * t417 + c6_arm * t213;
         let t595 = c6_arm * t389 - s6_arm * t392;
         let t599 = s6_arm * t389 + c6_arm * t392;
-        let t605 = t377 * t467 + t286 * t588;
-        let t609 = s6_arm * t399 + c6_arm * t239;
-        let t613 = s6_arm * t239 - c6_arm * t399;
-        let t624 = t488 + t518;
-        let t632 = c6_arm * t417 - s6_arm * t212;
-        let t643 = t377 * t471 + t286 * t632;
+        let t605 = t377 * t467 + t287 * t588;
+        let t609 = s6_arm * t399 + c6_arm * t240;
+        let t613 = s6_arm * t240 - c6_arm * t399;
+        let t624 = t493 + t518;
+        let t632 = c6_arm * t417 - s6_arm * t213;
+        let t643 = t377 * t471 + t287 * t632;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0, joint_accelerations[0] + t8,
                 c2_arm * (t12 + t14) - s2_arm * t7, t27, -t8,
                 s2_arm * (t20 - t24) - c2_arm * (t11 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t53, c23_arm * t52 - s23_arm * t63,
-                s23_arm * t70 + c23_arm * (t72 - t66), joint_accelerations[0] - t53,
-                s23_arm * (t67 - t72) - c23_arm * t80, 0.0, -(t84 * t63 + c23_arm * t86), t106,
-                -(0.45 * t27), -(0.2025 * t8), 0.0, 0.0, 0.0, 0.0, t142,
-                c23_arm * t148 - s23_arm * (t145 + t150),
-                t122 * t166 - t132 * t169 + c23_arm * t172, t53 - t142,
-                t122 * t179 - t132 * t181 + c23_arm * t184, t193,
-                t197 * t198 - t200 * t166 + t132 * t204 - c23_arm * t212, t237, t106 + t53 * 0.9,
-                t252, 0.0, 0.0, 0.0, 0.0, t285, t275 * t297 - t263 * t304 + t132 * t309,
-                t263 * t321 + t275 * t324 - t132 * t327, t142 + t193 - t285,
-                t263 * t342 - t275 * t344 + t132 * t347, t361,
-                t367 * t368 + t370 * t321 + t200 * t304 + t132 * t377 - t275 * t212, t420, -t237,
-                t252, 0.0, 0.0, 0.0, 0.0, t464, t275 * t490 - (t442 * t497 + t454 * t485),
-                t442 * t516 - t454 * t519 + t275 * t522, t285 + t361 - t464,
-                t442 * t544 - t454 * t546 + t275 * t549, t460 - t442 * t484 + t275 * t515,
-                t577 * t578 + t580 * t516 + t370 * t497 + t454 * t377 - t275 * t588,
-                t577 * t546 - t580 * t624 + t370 * t485 + t442 * t377 - t275 * t632, t420, t252,
+                0.0, 0.0, 0.0, t54, c23_arm * t63 - s23_arm * t52,
+                s23_arm * t71 + c23_arm * (t73 - t67), -t53, s23_arm * (t68 - t73) - c23_arm * t80,
+                0.0, -(t84 * t52 + c23_arm * t86), s23_arm * t86 - t84 * t63, -(0.45 * t27),
+                -(0.2025 * t8), 0.0, 0.0, 0.0, 0.0, t146, c23_arm * t155 - s23_arm * (t152 + t151),
+                t125 * t170 - t132 * t173 + c23_arm * t176, t145,
+                t125 * t182 - t132 * t184 + c23_arm * t187, t196,
+                t199 * t200 - t202 * t170 + t132 * t206 - c23_arm * t213, t238,
+                t63 * t198 + s23_arm * t211, t254, 0.0, 0.0, 0.0, 0.0, t286,
+                t276 * t305 - t264 * t300 + t132 * t311, t264 * t322 + t276 * t325 - t132 * t328,
+                t146 + t196 - t286, t264 * t343 - t276 * t345 + t132 * t348, t362,
+                t367 * t368 + t370 * t322 + t202 * t300 + t132 * t377 - t276 * t213, t420, -t238,
+                t254, 0.0, 0.0, 0.0, 0.0, t464, t276 * t495 - (t442 * t489 + t454 * t499),
+                t442 * t516 - t454 * t519 + t276 * t522, t286 + t362 - t464,
+                t442 * t544 - t454 * t546 + t276 * t549, t460 - t442 * t498 + t276 * t515,
+                t577 * t578 + t580 * t516 + t370 * t489 + t454 * t377 - t276 * t588,
+                t577 * t546 - t580 * t624 + t370 * t499 + t442 * t377 - t276 * t632, t420, t254,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
                 -t34, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t55, t68, -t76, t55, t83, t69,
-                t89 * t70 - t91 * (t67 + t72) + t102, t110 - t113, -(0.45 * t13), 0.45 * t96, 0.0,
-                0.0, 0.0, 0.0, -t145, t164, -t177, t150, -t189, t194,
-                t89 * t159 + t220 * t221 + t224, t246, t110 - t250, t256, 0.0, 0.0, 0.0, 0.0, t292,
-                t316, t334, t341, t354, t365, t385 * t321 - t389 * t368 + t392 * t304 + t397, t429,
-                -t246, t256, 0.0, 0.0, 0.0, 0.0, t475, t506, t529, t541, t556, t572,
-                t385 * t497 - (t595 * t578 + t599 * t516) - t605,
-                t599 * t624 - t595 * t546 + t385 * t485 - t643, t429, t256, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t56, t69, -t77, t56, t83, t70,
+                t89 * t71 - t91 * (t68 + t73) + t102, t107 + t112 - t116, -(0.45 * t13), 0.45 * t96,
+                0.0, 0.0, 0.0, 0.0, -t152, t168, -t181, t151, -t192, t147,
+                t89 * t149 + t221 * t222 + t225, t247, t112 - t208, t257, 0.0, 0.0, 0.0, 0.0, t293,
+                t317, t335, -t342, t355, t366, t385 * t322 - t389 * t368 + t392 * t300 + t397, t429,
+                -t247, t257, 0.0, 0.0, 0.0, 0.0, t475, t507, t529, -t541, t556, t572,
+                t385 * t489 - (t595 * t578 + t599 * t516) - t605,
+                t599 * t624 - t595 * t546 + t385 * t499 - t643, t429, t257, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t55, t68, -t76, t55, t83, t69, t102, -t113, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t145, t164,
-                -t177, t150, -t189, t194, t220 + t224, t247, -t250, -t257, 0.0, 0.0, 0.0, 0.0, t292,
-                t316, t334, t341, t354, t365, t399 * t368 + t401 * t321 - t239 * t304 + t397, -t435,
-                -t247, -t257, 0.0, 0.0, 0.0, 0.0, t475, t506, t529, t541, t556, t572,
-                t609 * t516 - t613 * t578 + t401 * t497 - t605,
-                t401 * t485 - (t613 * t546 + t609 * t624) - t643, -t435, -t257, 0.0, 0.0, 0.0, 0.0,
+                -t56, t69, -t77, t56, t83, t70, t102, -t116, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t152, t168,
+                -t181, t151, -t192, t147, t221 + t225, t248, -(t107 + t208), -t258, 0.0, 0.0, 0.0,
+                0.0, t293, t317, t335, -t342, t355, t366,
+                t399 * t368 + t401 * t322 - t240 * t300 + t397, -t435, -t248, -t258, 0.0, 0.0, 0.0,
+                0.0, t475, t507, t529, -t541, t556, t572,
+                t609 * t516 - t613 * t578 + t401 * t489 - t605,
+                t401 * t499 - (t613 * t546 + t609 * t624) - t643, -t435, -t258, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t140, t148,
-                t172, -t140, t184, t165, -t212, -t234, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t295,
-                c5_arm * t297 - s5_arm * t304, s5_arm * t321 + c5_arm * t324, t312,
-                s5_arm * t342 - c5_arm * t344, -t366, -(c5_arm * t212), t436, t234, 0.0, 0.0, 0.0,
-                0.0, 0.0, t482, c5_arm * t490 - s5_arm * (t487 + t508),
-                t476 * t516 - t478 * t519 + c5_arm * t522, t295 - t366 - t482,
-                t476 * t544 - t478 * t546 + c5_arm * t549, t479 - t476 * t484 + c5_arm * t515,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t143, t155,
+                t176, -t143, t187, t169, -t213, -t235, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t303,
+                c5_arm * t305 - s5_arm * t300, s5_arm * t322 + c5_arm * t325, t302,
+                s5_arm * t343 - c5_arm * t345, -t294, -(c5_arm * t213), t436, t235, 0.0, 0.0, 0.0,
+                0.0, 0.0, t482, c5_arm * t495 - s5_arm * (t492 + t491),
+                t476 * t516 - t478 * t519 + c5_arm * t522, t303 - t294 - t482,
+                t476 * t544 - t478 * t546 + c5_arm * t549, t479 - t476 * t498 + c5_arm * t515,
                 t377 * t478 - c5_arm * t588, t377 * t476 - c5_arm * t632, t436, 0.0, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t283, t309, -t327, t283,
-                t347, t320, t377, -t417, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, -t487,
-                s6_arm * t497 - c6_arm * t485, -(s6_arm * t516 + c6_arm * t519), t508,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t284, t311, -t328, t284,
+                t348, t321, t377, -t417, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, -t492,
+                s6_arm * t489 - c6_arm * t499, -(s6_arm * t516 + c6_arm * t519), t491,
                 -(s6_arm * t544 + c6_arm * t546), t483, c6_arm * t377, -(s6_arm * t377), -t417, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
@@ -670,7 +662,7 @@ impl Rx90 {
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t462, t490, t522, -t462, t549, t515, -t588,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t462, t495, t522, -t462, t549, t515, -t588,
                 -t632, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
@@ -686,7 +678,7 @@ impl Rx90 {
     /// Output: 6 x 58.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 612 operations (258 additions, 354 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 507 intermediates.
+    /// 610 operations (256 additions, 354 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 505 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 6],
@@ -697,272 +689,269 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t3 = c2_arm * joint_velocities[0];
-        let t4 = joint_velocities[1] * t3;
-        let t5 = s2_arm * joint_accelerations[0];
-        let t6 = t5 + t4;
-        let t7 = t4 + t6;
-        let t9 = s2_arm * joint_velocities[0];
-        let t10 = t9 * t3;
-        let t12 = joint_velocities[1] * t9;
+        let t6 = joint_accelerations[1] + joint_accelerations[2];
+        let t9 = 9.81 * c2_arm;
+        let t10 = 9.81 * s2_arm;
+        let t11 = s2_arm * joint_velocities[0];
+        let t12 = joint_velocities[1] * t11;
         let t13 = c2_arm * joint_accelerations[0];
         let t14 = t13 - t12;
         let t15 = t12 - t14;
-        let t18 = t9 * t9;
-        let t19 = t3 * t3;
-        let t21 = t10 + joint_accelerations[1];
-        let t23 = joint_velocities[1] * joint_velocities[1];
-        let t32 = 9.81 * c2_arm;
-        let t33 = 9.81 * s2_arm;
+        let t17 = c2_arm * joint_velocities[0];
+        let t18 = t11 * t17;
+        let t19 = t18 + joint_accelerations[1];
+        let t21 = joint_velocities[1] * joint_velocities[1];
+        let t22 = t11 * t11;
+        let t26 = s2_arm * joint_accelerations[0];
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t43 = joint_velocities[0] * c23_arm;
-        let t44 = joint_velocities[1] + joint_velocities[2];
-        let t45 = t43 * t44;
-        let t50 = c3_arm * t6 + s3_arm * t14 + joint_velocities[2] * t43;
-        let t51 = t45 + t50;
-        let t53 = joint_velocities[0] * s23_arm;
-        let t54 = t53 * t43;
-        let t56 = t53 * t44;
-        let t61 = c3_arm * t14 - s3_arm * t6 - joint_velocities[2] * t53;
-        let t62 = t56 - t61;
-        let t65 = t53 * t53;
-        let t66 = t43 * t43;
-        let t67 = t65 - t66;
-        let t68 = joint_accelerations[1] + joint_accelerations[2];
-        let t69 = t54 + t68;
-        let t71 = t44 * t44;
-        let t75 = t45 - t50;
-        let t78 = t54 - t68;
-        let t81 = t56 + t61;
-        let t82 = 0.45 * c2_arm;
-        let t84 = 0.45 * t15;
-        let t87 = 0.45 * c3_arm;
-        let t89 = 0.45 * s3_arm;
-        let t94 = t32 + 0.45 * t21;
-        let t98 = t33 - 0.45 * (t19 + t23);
-        let t100 = c3_arm * t94 - s3_arm * t98;
-        let t106 = t65 + t71;
-        let t111 = c3_arm * t98 + s3_arm * t94;
-        let t116 = s23_arm * c4_arm;
-        let t122 = s4_arm * t53 + c4_arm * t44;
-        let t124 = c4_arm * t50 - s4_arm * t68 - joint_velocities[3] * t122;
-        let t126 = s23_arm * s4_arm;
-        let t129 = c4_arm * t53 - s4_arm * t44;
-        let t130 = t43 + joint_velocities[3];
-        let t131 = t129 * t130;
-        let t132 = t126 * t131;
-        let t134 = t129 * t122;
-        let t137 = t53 * t130;
-        let t138 = t122 * t130;
-        let t139 = t124 - t138;
-        let t141 = t137 + s4_arm * t139;
-        let t142 = t129 * t129;
-        let t143 = t122 * t122;
-        let t144 = t142 - t143;
-        let t150 = s4_arm * t50 + c4_arm * t68 + joint_velocities[3] * t129;
-        let t151 = t131 + t150;
-        let t158 = s4_arm * t151 - c4_arm * t139;
-        let t159 = t61 + joint_accelerations[3];
-        let t160 = t159 - t134;
-        let t162 = t130 * t130;
-        let t163 = t162 - t142;
-        let t166 = t138 + t124;
-        let t169 = s4_arm * t160;
-        let t171 = t169 + c4_arm * t163;
-        let t172 = t143 - t162;
-        let t174 = t134 + t159;
-        let t177 = t131 - t150;
-        let t181 = c4_arm * t174;
-        let t182 = s4_arm * t172 + t181;
-        let t188 = 0.45 * (s23_arm - c2_arm);
-        let t189 = s4_arm * t188;
-        let t190 = t143 + t162;
-        let t192 = c4_arm * t188;
-        let t196 = t100 - 0.45 * t106;
-        let t199 = t111 + 0.45 * t78;
-        let t202 = 0.45 * (t15 + t51);
-        let t204 = s4_arm * t199 + c4_arm * t202;
-        let t209 = 0.45 * c4_arm;
-        let t212 = t209 * t190 + 0.45 * t169;
-        let t213 = 1.0 - s3_arm;
-        let t216 = c4_arm * t196;
-        let t220 = t142 + t162;
-        let t226 = c4_arm * t199 - s4_arm * t202;
-        let t231 = 0.45 * s4_arm;
-        let t233 = 0.45 * t181 - t231 * t220;
-        let t237 = s4_arm * t196;
-        let t245 = t116 * c5_arm + c23_arm * s5_arm;
-        let t251 = c5_arm * t130 - s5_arm * t129;
-        let t253 = c5_arm * t124 + s5_arm * t159 + joint_velocities[4] * t251;
-        let t257 = c23_arm * c5_arm - t116 * s5_arm;
-        let t260 = c5_arm * t129 + s5_arm * t130;
-        let t261 = t122 + joint_velocities[4];
-        let t262 = t260 * t261;
-        let t263 = t257 * t262;
-        let t265 = t260 * t251;
-        let t268 = s4_arm * s5_arm;
-        let t269 = t268 * t262;
-        let t270 = s4_arm * c5_arm;
-        let t274 = t269 - t253 * t270 - c4_arm * t265;
-        let t275 = t129 * t261;
-        let t276 = t251 * t261;
-        let t277 = t276 + t253;
-        let t285 = c5_arm * t159 - s5_arm * t124 - joint_velocities[4] * t260;
-        let t286 = t262 - t285;
-        let t289 = t260 * t260;
-        let t290 = t251 * t251;
-        let t291 = t289 - t290;
-        let t298 = t270 * t286 + t268 * t277 + c4_arm * t291;
-        let t302 = t150 + joint_accelerations[4];
-        let t303 = t265 + t302;
-        let t305 = t261 * t261;
-        let t306 = t305 - t289;
-        let t309 = t276 - t253;
-        let t316 = t268 * t306 - t270 * t303 - c4_arm * t309;
-        let t320 = t290 - t305;
-        let t322 = t265 - t302;
-        let t325 = t262 + t285;
-        let t332 = c4_arm * t325 - (t270 * t320 + t268 * t322);
-        let t343 = c4_arm * t302 - (t270 * t276 + t269);
-        let t344 = c5_arm * t189;
-        let t345 = t290 + t305;
-        let t347 = s5_arm * t189;
-        let t354 = c5_arm * t196 - s5_arm * t226;
-        let t360 = t89 - 0.45;
-        let t361 = c4_arm * t360;
-        let t363 = c5_arm * t87 - s5_arm * t361;
-        let t367 = c5_arm * t361 + s5_arm * t87;
-        let t370 = s4_arm * t360;
-        let t375 = c4_arm * t354 - t204 * t268;
-        let t377 = c5_arm * t209;
-        let t379 = s5_arm * t209;
-        let t388 = t289 + t305;
-        let t395 = c5_arm * t226 + s5_arm * t196;
-        let t406 = t204 * t270 + c4_arm * t395;
-        let t420 = t245 * c6_arm - t126 * s6_arm;
-        let t426 = s6_arm * t260 + c6_arm * t261;
-        let t428 = c6_arm * t253 - s6_arm * t302 - joint_velocities[5] * t426;
-        let t432 = t245 * s6_arm + t126 * c6_arm;
-        let t435 = c6_arm * t260 - s6_arm * t261;
-        let t436 = t251 + joint_velocities[5];
-        let t437 = t435 * t436;
-        let t438 = t432 * t437;
-        let t440 = t435 * t426;
-        let t445 = s6_arm * t270 - c4_arm * c6_arm;
-        let t446 = t445 * t437;
-        let t449 = c6_arm * t270 + c4_arm * s6_arm;
-        let t453 = t446 - t428 * t449 + t268 * t440;
-        let t454 = s5_arm * c6_arm;
-        let t456 = s5_arm * s6_arm;
-        let t457 = t456 * t437;
-        let t461 = t260 * t436;
-        let t462 = t426 * t436;
-        let t463 = t428 - t462;
-        let t466 = t435 * t435;
-        let t467 = t426 * t426;
-        let t468 = t466 - t467;
-        let t474 = s6_arm * t253 + c6_arm * t302 + joint_velocities[5] * t435;
-        let t475 = t437 + t474;
-        let t484 = t449 * t475 + t445 * t463 + t268 * t468;
-        let t493 = t285 + joint_accelerations[5];
-        let t494 = t493 - t440;
-        let t496 = t436 * t436;
-        let t497 = t496 - t466;
-        let t500 = t462 + t428;
-        let t507 = t445 * t497 - t449 * t494 + t268 * t500;
-        let t516 = t467 - t496;
-        let t518 = t440 + t493;
-        let t521 = t437 - t474;
-        let t528 = t445 * t518 - t449 * t516 + t268 * t521;
-        let t544 = t449 * t462 - t446 + t268 * t493;
-        let t549 = t188 * t449;
-        let t550 = t467 + t496;
-        let t552 = t188 * t445;
-        let t560 = s6_arm * t395 + c6_arm * t204;
-        let t567 = c6_arm * t367 - s6_arm * t370;
-        let t571 = s6_arm * t367 + c6_arm * t370;
-        let t577 = t354 * t445 + t268 * t560;
-        let t581 = s6_arm * t377 + c6_arm * t231;
-        let t585 = s6_arm * t231 - c6_arm * t377;
-        let t596 = t466 + t496;
-        let t604 = c6_arm * t395 - s6_arm * t204;
-        let t615 = t354 * t449 + t268 * t604;
+        let t35 = joint_velocities[0] * s23_arm;
+        let t36 = joint_velocities[1] + joint_velocities[2];
+        let t37 = t35 * t36;
+        let t39 = joint_velocities[1] * t17;
+        let t40 = t26 + t39;
+        let t44 = c3_arm * t14 - s3_arm * t40 - joint_velocities[2] * t35;
+        let t45 = t37 - t44;
+        let t47 = joint_velocities[0] * c23_arm;
+        let t48 = t35 * t47;
+        let t49 = t17 * t17;
+        let t60 = t47 * t36;
+        let t65 = c3_arm * t40 + s3_arm * t14 + joint_velocities[2] * t47;
+        let t66 = t60 + t65;
+        let t70 = t35 * t35;
+        let t71 = t47 * t47;
+        let t72 = t70 - t71;
+        let t73 = t48 + t6;
+        let t75 = t36 * t36;
+        let t79 = t60 - t65;
+        let t82 = t48 - t6;
+        let t85 = t37 + t44;
+        let t87 = 0.45 * (t15 + t66);
+        let t89 = 0.45 * (s23_arm - c2_arm);
+        let t93 = t10 - 0.45 * (t49 + t21);
+        let t96 = t9 + 0.45 * t19;
+        let t100 = c3_arm * t93 + s3_arm * t96 + 0.45 * t82;
+        let t101 = 0.45 * s3_arm;
+        let t102 = t101 - 0.45;
+        let t104 = 0.45 * c3_arm;
+        let t107 = c3_arm * t96 - s3_arm * t93;
+        let t110 = t107 - 0.45 * (t70 + t75);
+        let t116 = s23_arm * s4_arm;
+        let t119 = c4_arm * t35 - s4_arm * t36;
+        let t120 = t47 + joint_velocities[3];
+        let t121 = t119 * t120;
+        let t122 = t116 * t121;
+        let t123 = s23_arm * c4_arm;
+        let t126 = s4_arm * t35 + c4_arm * t36;
+        let t127 = t126 * t120;
+        let t130 = t44 + joint_accelerations[3];
+        let t133 = t35 * t120;
+        let t138 = c4_arm * t65 - s4_arm * t6 - joint_velocities[3] * t126;
+        let t141 = t119 * t126;
+        let t144 = t138 - t127;
+        let t146 = t133 + s4_arm * t144;
+        let t147 = t126 * t126;
+        let t148 = t120 * t120;
+        let t149 = t147 - t148;
+        let t151 = t141 + t130;
+        let t158 = s4_arm * t65 + c4_arm * t6 + joint_velocities[3] * t119;
+        let t159 = t121 - t158;
+        let t163 = c4_arm * t151;
+        let t164 = s4_arm * t149 + t163;
+        let t165 = t130 - t141;
+        let t167 = t119 * t119;
+        let t168 = t148 - t167;
+        let t171 = t127 + t138;
+        let t174 = s4_arm * t165;
+        let t176 = t174 + c4_arm * t168;
+        let t177 = t167 - t147;
+        let t179 = t121 + t158;
+        let t186 = s4_arm * t179 - c4_arm * t144;
+        let t201 = t123 * c5_arm + c23_arm * s5_arm;
+        let t204 = c5_arm * t120 - s5_arm * t119;
+        let t205 = t126 + joint_velocities[4];
+        let t206 = t204 * t205;
+        let t210 = c23_arm * c5_arm - t123 * s5_arm;
+        let t213 = c5_arm * t119 + s5_arm * t120;
+        let t214 = t213 * t205;
+        let t215 = t210 * t214;
+        let t217 = t158 + joint_accelerations[4];
+        let t221 = s4_arm * c5_arm;
+        let t223 = s4_arm * s5_arm;
+        let t224 = t223 * t214;
+        let t226 = c4_arm * t217 - (t221 * t206 + t224);
+        let t227 = t119 * t205;
+        let t232 = c5_arm * t138 + s5_arm * t130 + joint_velocities[4] * t204;
+        let t235 = t213 * t204;
+        let t241 = t224 - t232 * t221 - c4_arm * t235;
+        let t242 = t206 + t232;
+        let t245 = s4_arm * t89;
+        let t247 = c4_arm * t89;
+        let t248 = t167 + t148;
+        let t254 = c4_arm * t100 - s4_arm * t87;
+        let t259 = 0.45 * s4_arm;
+        let t261 = 0.45 * t163 - t259 * t248;
+        let t262 = 1.0 - s3_arm;
+        let t266 = s4_arm * t110;
+        let t274 = c5_arm * t130 - s5_arm * t138 - joint_velocities[4] * t213;
+        let t275 = t214 - t274;
+        let t278 = t213 * t213;
+        let t279 = t204 * t204;
+        let t280 = t278 - t279;
+        let t287 = t221 * t275 + t223 * t242 + c4_arm * t280;
+        let t291 = t235 + t217;
+        let t293 = t205 * t205;
+        let t294 = t293 - t278;
+        let t297 = t206 - t232;
+        let t304 = t223 * t294 - t221 * t291 - c4_arm * t297;
+        let t308 = t279 - t293;
+        let t310 = t235 - t217;
+        let t313 = t214 + t274;
+        let t320 = c4_arm * t313 - (t221 * t308 + t223 * t310);
+        let t328 = t201 * s6_arm + t116 * c6_arm;
+        let t331 = c6_arm * t213 - s6_arm * t205;
+        let t332 = t204 + joint_velocities[5];
+        let t333 = t331 * t332;
+        let t334 = t328 * t333;
+        let t337 = t201 * c6_arm - t116 * s6_arm;
+        let t340 = s6_arm * t213 + c6_arm * t205;
+        let t341 = t340 * t332;
+        let t344 = t274 + joint_accelerations[5];
+        let t349 = c6_arm * t221 + c4_arm * s6_arm;
+        let t353 = s6_arm * t221 - c4_arm * c6_arm;
+        let t354 = t353 * t333;
+        let t357 = t349 * t341 - t354 + t223 * t344;
+        let t358 = s5_arm * s6_arm;
+        let t359 = t358 * t333;
+        let t360 = s5_arm * c6_arm;
+        let t365 = t213 * t332;
+        let t370 = c6_arm * t232 - s6_arm * t217 - joint_velocities[5] * t340;
+        let t373 = t331 * t340;
+        let t379 = t354 - t370 * t349 + t223 * t373;
+        let t384 = t370 - t341;
+        let t388 = c5_arm * t245;
+        let t390 = s5_arm * t245;
+        let t391 = t278 + t293;
+        let t397 = s4_arm * t100 + c4_arm * t87;
+        let t401 = c5_arm * t254 + s5_arm * t110;
+        let t405 = c4_arm * t102;
+        let t408 = c5_arm * t405 + s5_arm * t104;
+        let t412 = c5_arm * t104 - s5_arm * t405;
+        let t415 = s4_arm * t102;
+        let t420 = t397 * t221 + c4_arm * t401;
+        let t422 = 0.45 * c4_arm;
+        let t423 = c5_arm * t422;
+        let t425 = s5_arm * t422;
+        let t432 = t147 + t148;
+        let t443 = t422 * t432 + 0.45 * t174;
+        let t446 = c4_arm * t110;
+        let t449 = t344 - t373;
+        let t451 = t332 * t332;
+        let t452 = t331 * t331;
+        let t453 = t451 - t452;
+        let t456 = t341 + t370;
+        let t463 = t353 * t453 - t349 * t449 + t223 * t456;
+        let t472 = t340 * t340;
+        let t473 = t472 - t451;
+        let t475 = t373 + t344;
+        let t482 = s6_arm * t232 + c6_arm * t217 + joint_velocities[5] * t331;
+        let t483 = t333 - t482;
+        let t490 = t353 * t475 - t349 * t473 + t223 * t483;
+        let t499 = t452 - t472;
+        let t501 = t333 + t482;
+        let t510 = t349 * t501 + t353 * t384 + t223 * t499;
+        let t519 = t279 + t293;
+        let t527 = c5_arm * t110 - s5_arm * t254;
+        let t539 = c4_arm * t527 - t397 * t223;
+        let t548 = t89 * t349;
+        let t549 = t472 + t451;
+        let t551 = t89 * t353;
+        let t559 = s6_arm * t401 + c6_arm * t397;
+        let t566 = c6_arm * t408 - s6_arm * t415;
+        let t570 = s6_arm * t408 + c6_arm * t415;
+        let t576 = t527 * t353 + t223 * t559;
+        let t580 = s6_arm * t423 + c6_arm * t259;
+        let t584 = s6_arm * t259 - c6_arm * t423;
+        let t595 = t452 + t451;
+        let t603 = c6_arm * t401 - s6_arm * t397;
+        let t614 = t527 * t349 + t223 * t603;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t7,
-                c2_arm * t7 - s2_arm * t15, s2_arm * t21 + c2_arm * (t23 - t18),
-                s2_arm * (t19 - t23) - c2_arm * (t10 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, s23_arm * t51, c23_arm * t51 - s23_arm * t62,
-                s23_arm * t69 + c23_arm * (t71 - t65), s23_arm * (t66 - t71) - c23_arm * t78, 0.0,
-                -(t82 * t62 + c23_arm * t84), s23_arm * t84 - t82 * t51, 0.0, 0.0, 0.0, 0.0,
-                t116 * t124 - t132 + c23_arm * t134, c23_arm * t144 - (t116 * t151 + t126 * t139),
-                t116 * t160 - t126 * t163 + c23_arm * t166,
-                t116 * t172 - t126 * t174 + c23_arm * t177, t132 - t116 * t138 + c23_arm * t159,
-                t189 * t190 - t192 * t160 + t126 * t196 - c23_arm * t204,
-                t189 * t174 + t192 * t220 + t116 * t196 - c23_arm * t226, 0.0, 0.0, 0.0, 0.0,
-                t245 * t253 + t263 - t126 * t265, t257 * t277 - t245 * t286 + t126 * t291,
-                t245 * t303 + t257 * t306 - t126 * t309, t245 * t320 - t257 * t322 + t126 * t325,
-                t245 * t276 - t263 + t126 * t302,
-                t344 * t345 + t347 * t303 + t192 * t286 + t126 * t354 - t257 * t204,
-                t192 * t277 - (t344 * t322 + t347 * t388) + t245 * t204 - t126 * t395, 0.0, 0.0,
-                0.0, 0.0, t420 * t428 - t438 + t257 * t440,
-                t257 * t468 - (t420 * t475 + t432 * t463), t420 * t494 - t432 * t497 + t257 * t500,
-                t420 * t516 - t432 * t518 + t257 * t521, t438 - t420 * t462 + t257 * t493,
-                t549 * t550 + t552 * t494 + t347 * t475 + t432 * t354 - t257 * t560,
-                t549 * t518 - t552 * t596 + t347 * t463 + t420 * t354 - t257 * t604, 0.0, 0.0, 0.0,
-                0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(c2_arm * t15), s2_arm * t19 + c2_arm * (t21 - t22), -(c23_arm * t45),
+                s2_arm * (t49 - t21) - c2_arm * (t18 - joint_accelerations[1]),
+                c2_arm * (t39 + t40) - s2_arm * t15, c23_arm * t66 - s23_arm * t45,
+                s23_arm * t73 + c23_arm * (t75 - t70), s23_arm * (t71 - t75) - c23_arm * t82,
+                t87 * t89, t122 - t123 * t127 + c23_arm * t130, t123 * t138 - t122 + c23_arm * t141,
+                t123 * t149 - t116 * t151 + c23_arm * t159,
+                t123 * t165 - t116 * t168 + c23_arm * t171,
+                c23_arm * t177 - (t123 * t179 + t116 * t144),
+                -(0.45 * c2_arm * t45 + c23_arm * (0.45 * t15)), t201 * t206 - t215 + t116 * t217,
+                t201 * t232 + t215 - t116 * t235,
+                t245 * t151 + t247 * t248 + t123 * t110 - c23_arm * t254,
+                t210 * t242 - t201 * t275 + t116 * t280, t201 * t291 + t210 * t294 - t116 * t297,
+                t201 * t308 - t210 * t310 + t116 * t313, t334 - t337 * t341 + t210 * t344,
+                t337 * t370 - t334 + t210 * t373,
+                t247 * t242 - (t388 * t310 + t390 * t391) + t201 * t397 - t116 * t401,
+                t245 * t432 - t247 * t165 + t116 * t110 - c23_arm * t397,
+                t337 * t449 - t328 * t453 + t210 * t456, t337 * t473 - t328 * t475 + t210 * t483,
+                t210 * t499 - (t337 * t501 + t328 * t384),
+                t388 * t519 + t390 * t291 + t247 * t275 + t116 * t527 - t210 * t397,
+                t548 * t549 + t551 * t449 + t390 * t501 + t328 * t527 - t210 * t559,
+                t548 * t475 - t551 * t595 + t390 * t384 + t337 * t527 - t210 * t603,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t13, joint_accelerations[1], t32, -t33,
-                joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0, -t54, t67,
-                -t75, t81, t68, t87 * t69 - t89 * (t66 + t71) + t100, t89 * t78 - t87 * t106 - t111,
-                0.0, 0.0, 0.0, 0.0, -t141, t158, -t171, -t182, t137,
-                t87 * t151 + t212 * t213 + t216, t233 * t213 + t87 * t139 - t237, 0.0, 0.0, 0.0,
-                0.0, t274, t298, t316, t332, t343, t363 * t303 - t367 * t345 + t370 * t286 + t375,
-                t367 * t322 - t363 * t388 + t370 * t277 - t406, 0.0, 0.0, 0.0, 0.0, t453, t484,
-                t507, t528, t544, t363 * t475 - (t567 * t550 + t571 * t494) - t577,
-                t571 * t596 - t567 * t518 + t363 * t463 - t615, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t6, t9, -t10, t18, t26, t48, t13,
+                t22 - t49, t72, -t79, t85, t100 * t102 + t104 * t110, t133, -t146, -t164, -t176,
+                t186, t104 * t73 - t101 * (t71 + t75) + t107, t226, t241,
+                t261 * t262 + t104 * t144 - t266, t287, t304, t320, t357, t379,
+                t408 * t310 - t412 * t391 + t415 * t242 - t420, t104 * t179 + t443 * t262 + t446,
+                t463, t490, t510, t412 * t291 - t408 * t519 + t415 * t275 + t539,
+                t412 * t501 - (t566 * t549 + t570 * t449) - t576,
+                t570 * t595 - t566 * t475 + t412 * t384 - t614,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t54, t67,
-                -t75, t81, t68, t100, -t111, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, -t141, t158, -t171, -t182, t137,
-                t212 + t216, t233 - t237, 0.0, 0.0, 0.0, 0.0, t274, t298, t316, t332, t343,
-                t377 * t345 + t379 * t303 - t231 * t286 + t375,
-                -(t377 * t322 + t379 * t388 + t231 * t277 + t406), 0.0, 0.0, 0.0, 0.0, t453, t484,
-                t507, t528, t544, t581 * t494 - t585 * t550 + t379 * t475 - t577,
-                t379 * t463 - (t585 * t518 + t581 * t596) - t615, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
+                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t6, 0.0, 0.0, 0.0, 0.0, t48, 0.0, 0.0, t72, -t79, t85,
+                -(0.45 * t100), t133, -t146, -t164, -t176, t186, t107, t226, t241, t261 - t266,
+                t287, t304, t320, t357, t379, -(t423 * t310 + t425 * t391 + t259 * t242 + t420),
+                t443 + t446, t463, t490, t510, t423 * t519 + t425 * t291 - t259 * t275 + t539,
+                t580 * t449 - t584 * t549 + t425 * t501 - t576,
+                t425 * t384 - (t584 * t475 + t580 * t595) - t614,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                t130, t141, t159, t171, t177, 0.0, -t227, t227 + s5_arm * t242, -t254,
+                c5_arm * t242 - s5_arm * t275, s5_arm * t291 + c5_arm * t294,
+                s5_arm * t308 - c5_arm * t310, t359 - t360 * t341 + c5_arm * t344,
+                t370 * t360 - t359 + c5_arm * t373, s5_arm * t397, -t397,
+                t360 * t449 - t358 * t453 + c5_arm * t456,
+                t360 * t473 - t358 * t475 + c5_arm * t483,
+                c5_arm * t499 - (t360 * t501 + t358 * t384), -(c5_arm * t397),
+                t527 * t358 - c5_arm * t559, t527 * t360 - c5_arm * t603,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t217,
+                -t235, 0.0, t280, -t297, t313, t365, -(t365 + s6_arm * t384), -t401, 0.0,
+                -(s6_arm * t449 + c6_arm * t453), -(s6_arm * t473 + c6_arm * t475),
+                s6_arm * t501 - c6_arm * t384, t527, c6_arm * t527, -(s6_arm * t527),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t134, t144, t166, t177, t159, -t204, -t226,
-                joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, t275 + s5_arm * t277,
-                c5_arm * t277 - s5_arm * t286, s5_arm * t303 + c5_arm * t306,
-                s5_arm * t320 - c5_arm * t322, -t275, -(c5_arm * t204), s5_arm * t204, 0.0, 0.0,
-                0.0, 0.0, t428 * t454 - t457 + c5_arm * t440,
-                c5_arm * t468 - (t454 * t475 + t456 * t463),
-                t454 * t494 - t456 * t497 + c5_arm * t500,
-                t454 * t516 - t456 * t518 + c5_arm * t521, t457 - t454 * t462 + c5_arm * t493,
-                t354 * t456 - c5_arm * t560, t354 * t454 - c5_arm * t604, 0.0, 0.0, 0.0, 0.0,
-            ],
-            [
+                0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, -t265, t291, -t309, t325, t302, t354, -t395, joint_accelerations[4],
-                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                -(t461 + s6_arm * t463), s6_arm * t475 - c6_arm * t463,
-                -(s6_arm * t494 + c6_arm * t497), -(s6_arm * t516 + c6_arm * t518), t461,
-                c6_arm * t354, -(s6_arm * t354), 0.0, 0.0, 0.0, 0.0,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t440, t468, t500,
-                t521, t493, -t560, -t604, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0,
+                t344, t373, 0.0, 0.0, t456, t483, t499, 0.0, -t559, -t603,
             ],
         ]
     }

@@ -139,76 +139,76 @@ impl Stanford {
                 "zz_1R",
                 "zz_1",
                 &[
-                    ("ia_1", 1.0), ("yy_2", 1.0), ("mz_2", 0.3048), ("m_2", 0.02322575999999999),
-                    ("zz_3", 1.0),
+                    ("ia_1", 1.0), ("mz_2", 0.3048), ("m_2", 0.02322575999999999), ("xx_2", 1.0),
+                    ("xx_3", 1.0), ("yy_4", 1.0),
                 ],
             ),
             BaseParameter::new("fv_1", "fv_1", &[]),
             BaseParameter::new("fs_1", "fs_1", &[]),
             BaseParameter::new("off_1", "off_1", &[]),
             BaseParameter::new(
-                "xx_2R",
-                "xx_2",
-                &[("yy_2", -1.0), ("xx_3", 1.0), ("zz_3", -1.0), ("yy_4", 1.0)],
-            ),
-            BaseParameter::new("xy_2R", "xy_2", &[("xz_3", -1.0)]),
-            BaseParameter::new("xz_2R", "xz_2", &[("xy_3", 1.0)]),
-            BaseParameter::new("yz_2R", "yz_2", &[("yz_3", -1.0)]),
-            BaseParameter::new(
                 "zz_2R",
                 "zz_2",
                 &[("ia_2", 1.0), ("yy_3", 1.0), ("yy_4", 1.0)],
             ),
-            BaseParameter::new("mx_2", "mx_2", &[]),
-            BaseParameter::new("my_2", "my_2", &[]),
             BaseParameter::new("fv_2", "fv_2", &[]),
             BaseParameter::new("fs_2", "fs_2", &[]),
             BaseParameter::new("off_2", "off_2", &[]),
-            BaseParameter::new("mx_3", "mx_3", &[]),
-            BaseParameter::new("my_3", "my_3", &[]),
-            BaseParameter::new("mz_3R", "mz_3", &[("mz_4", 1.0)]),
+            BaseParameter::new("ia_3", "ia_3", &[]),
+            BaseParameter::new("fv_3", "fv_3", &[]),
+            BaseParameter::new("fs_3", "fs_3", &[]),
+            BaseParameter::new("off_3", "off_3", &[]),
+            BaseParameter::new("ia_4", "ia_4", &[]),
+            BaseParameter::new("fv_4", "fv_4", &[]),
+            BaseParameter::new("fs_4", "fs_4", &[]),
+            BaseParameter::new("off_4", "off_4", &[]),
+            BaseParameter::new("ia_5", "ia_5", &[]),
+            BaseParameter::new("fv_5", "fv_5", &[]),
+            BaseParameter::new("fs_5", "fs_5", &[]),
+            BaseParameter::new("off_5", "off_5", &[]),
+            BaseParameter::new("ia_6", "ia_6", &[]),
+            BaseParameter::new("fv_6", "fv_6", &[]),
+            BaseParameter::new("fs_6", "fs_6", &[]),
+            BaseParameter::new("off_6", "off_6", &[]),
+            BaseParameter::new(
+                "yy_2R",
+                "yy_2",
+                &[("zz_3", 1.0), ("xx_2", -1.0), ("xx_3", -1.0), ("yy_4", -1.0)],
+            ),
+            BaseParameter::new("yz_2R", "yz_2", &[("yz_3", -1.0)]),
+            BaseParameter::new("xz_2R", "xz_2", &[("xy_3", 1.0)]),
+            BaseParameter::new("my_2", "my_2", &[]),
+            BaseParameter::new("xy_2R", "xy_2", &[("xz_3", -1.0)]),
+            BaseParameter::new("mx_2", "mx_2", &[]),
             BaseParameter::new(
                 "m_3R",
                 "m_3",
                 &[("m_4", 1.0), ("m_5", 1.0), ("m_6", 1.0)],
             ),
-            BaseParameter::new("ia_3", "ia_3", &[]),
-            BaseParameter::new("fv_3", "fv_3", &[]),
-            BaseParameter::new("fs_3", "fs_3", &[]),
-            BaseParameter::new("off_3", "off_3", &[]),
+            BaseParameter::new("mz_3R", "mz_3", &[("mz_4", 1.0)]),
+            BaseParameter::new("zz_4R", "zz_4", &[("yy_5", 1.0)]),
             BaseParameter::new("xx_4R", "xx_4", &[("yy_4", -1.0), ("yy_5", 1.0)]),
+            BaseParameter::new("my_3", "my_3", &[]),
             BaseParameter::new("xy_4", "xy_4", &[]),
             BaseParameter::new("xz_4", "xz_4", &[]),
             BaseParameter::new("yz_4", "yz_4", &[]),
-            BaseParameter::new("zz_4R", "zz_4", &[("yy_5", 1.0)]),
-            BaseParameter::new("mx_4", "mx_4", &[]),
-            BaseParameter::new("my_4R", "my_4", &[("mz_5", 1.0)]),
-            BaseParameter::new("ia_4", "ia_4", &[]),
-            BaseParameter::new("fv_4", "fv_4", &[]),
-            BaseParameter::new("fs_4", "fs_4", &[]),
-            BaseParameter::new("off_4", "off_4", &[]),
+            BaseParameter::new("zz_5R", "zz_5", &[("yy_6", 1.0)]),
+            BaseParameter::new("mx_3", "mx_3", &[]),
             BaseParameter::new("xx_5R", "xx_5", &[("yy_5", -1.0), ("yy_6", 1.0)]),
+            BaseParameter::new("my_4R", "my_4", &[("mz_5", 1.0)]),
             BaseParameter::new("xy_5", "xy_5", &[]),
             BaseParameter::new("xz_5", "xz_5", &[]),
             BaseParameter::new("yz_5", "yz_5", &[]),
-            BaseParameter::new("zz_5R", "zz_5", &[("yy_6", 1.0)]),
-            BaseParameter::new("mx_5", "mx_5", &[]),
+            BaseParameter::new("zz_6", "zz_6", &[]),
+            BaseParameter::new("mx_4", "mx_4", &[]),
             BaseParameter::new("my_5R", "my_5", &[("mz_6", -1.0)]),
-            BaseParameter::new("ia_5", "ia_5", &[]),
-            BaseParameter::new("fv_5", "fv_5", &[]),
-            BaseParameter::new("fs_5", "fs_5", &[]),
-            BaseParameter::new("off_5", "off_5", &[]),
             BaseParameter::new("xx_6R", "xx_6", &[("yy_6", -1.0)]),
-            BaseParameter::new("xy_6", "xy_6", &[]),
             BaseParameter::new("xz_6", "xz_6", &[]),
             BaseParameter::new("yz_6", "yz_6", &[]),
-            BaseParameter::new("zz_6", "zz_6", &[]),
+            BaseParameter::new("xy_6", "xy_6", &[]),
+            BaseParameter::new("mx_5", "mx_5", &[]),
             BaseParameter::new("mx_6", "mx_6", &[]),
             BaseParameter::new("my_6", "my_6", &[]),
-            BaseParameter::new("ia_6", "ia_6", &[]),
-            BaseParameter::new("fv_6", "fv_6", &[]),
-            BaseParameter::new("fs_6", "fs_6", &[]),
-            BaseParameter::new("off_6", "off_6", &[]),
         ]
     };
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
@@ -631,232 +631,231 @@ impl Stanford {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
-        let t3 = c2_arm * joint_velocities[0];
-        let t4 = joint_velocities[1] * t3;
-        let t5 = s2_arm * joint_accelerations[0];
-        let t6 = t5 + t4;
-        let t7 = t4 + t6;
-        let t9 = s2_arm * joint_velocities[0];
-        let t10 = t9 * t3;
-        let t12 = joint_velocities[1] * t9;
-        let t13 = c2_arm * joint_accelerations[0];
-        let t14 = t12 - t13;
-        let t15 = t12 + t14;
-        let t18 = t9 * t9;
-        let t19 = t3 * t3;
-        let t21 = t10 + joint_accelerations[1];
-        let t22 = s2_arm * t21;
-        let t23 = joint_velocities[1] * joint_velocities[1];
-        let t26 = t22 + c2_arm * (t23 - t18);
-        let t27 = t10 - joint_accelerations[1];
-        let t28 = c2_arm * t27;
-        let t31 = t28 - s2_arm * (t19 - t23);
-        let t35 = 0.1524 * t5 - 9.81 * c2_arm;
-        let t39 = 0.1524 * t13 + 9.81 * s2_arm;
-        let t41 = 0.1524 * c2_arm;
-        let t42 = t19 + t23;
-        let t44 = s2_arm * joints[2];
-        let t50 = joint_velocities[0] * joint_velocities[0];
-        let t53 = joint_velocities[2] + joint_velocities[2];
-        let t55 = joints[2] * t7 - 0.1524 * t50 + t9 * t53;
-        let t59 = t18 + t23;
-        let t62 = joint_accelerations[2] - (t35 + joints[2] * t59);
-        let t69 = joints[2] * t27;
-        let t71 = joint_velocities[1] * t53 - (t39 + t69);
-        let t73 = s2_arm * t62 + c2_arm * t71;
-        let t79 = 0.1524 * s2_arm;
-        let t92 = s2_arm * s4_arm;
-        let t95 = s4_arm * joint_velocities[1] - c4_arm * t9;
-        let t96 = t3 + joint_velocities[3];
-        let t97 = t95 * t96;
-        let t98 = t92 * t97;
-        let t99 = s2_arm * c4_arm;
-        let t105 = s4_arm * t9 + c4_arm * joint_velocities[1];
-        let t107 = s4_arm * joint_accelerations[1] - c4_arm * t6
-            + joint_velocities[3] * t105;
-        let t110 = t95 * t105;
-        let t113 = t9 * t96;
-        let t114 = t105 * t96;
-        let t115 = t114 + t107;
-        let t122 = s4_arm * t6 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t95;
-        let t123 = t97 - t122;
-        let t127 = t95 * t95;
-        let t128 = t105 * t105;
-        let t129 = t127 - t128;
-        let t135 = t96 * t96;
-        let t136 = t135 - t127;
-        let t138 = joint_accelerations[3] - t14;
-        let t139 = t110 + t138;
-        let t142 = t114 - t107;
-        let t148 = t97 + t122;
-        let t150 = t128 - t135;
-        let t152 = t110 - t138;
-        let t165 = s4_arm * t41 + c4_arm * t44;
-        let t169 = s4_arm * t44 - c4_arm * t41;
-        let t170 = t128 + t135;
-        let t177 = c4_arm * t55 - s4_arm * t71;
-        let t182 = joints[2] * c4_arm;
-        let t184 = joints[2] * s4_arm;
-        let t190 = t127 + t135;
-        let t198 = c4_arm * t71 + s4_arm * t55;
-        let t212 = t99 * s5_arm - c2_arm * c5_arm;
-        let t215 = c5_arm * t95 - s5_arm * t96;
-        let t216 = t105 + joint_velocities[4];
-        let t217 = t215 * t216;
-        let t218 = t212 * t217;
-        let t221 = t99 * c5_arm + c2_arm * s5_arm;
-        let t227 = s5_arm * t95 + c5_arm * t96;
-        let t229 = c5_arm * t107 - s5_arm * t138 - joint_velocities[4] * t227;
-        let t232 = t215 * t227;
-        let t235 = s4_arm * c5_arm;
-        let t237 = s4_arm * s5_arm;
-        let t238 = t237 * t217;
-        let t242 = t95 * t216;
-        let t243 = t227 * t216;
-        let t244 = t229 - t243;
-        let t251 = s5_arm * t107 + c5_arm * t138 + joint_velocities[4] * t215;
-        let t252 = t217 + t251;
-        let t256 = t215 * t215;
-        let t257 = t227 * t227;
-        let t258 = t256 - t257;
-        let t269 = t216 * t216;
-        let t270 = t269 - t256;
-        let t272 = t122 + joint_accelerations[4];
-        let t273 = t272 - t232;
-        let t276 = t243 + t229;
-        let t287 = t232 + t272;
-        let t289 = t257 - t269;
-        let t292 = t217 - t251;
-        let t313 = c5_arm * t79 - s5_arm * t169;
-        let t317 = c5_arm * t169 + s5_arm * t79;
-        let t318 = t257 + t269;
-        let t326 = s5_arm * t198 + c5_arm * t62;
-        let t333 = c5_arm * t182;
-        let t335 = s5_arm * t182;
-        let t347 = t256 + t269;
-        let t354 = c5_arm * t198 - s5_arm * t62;
-        let t376 = t92 * s6_arm - t221 * c6_arm;
-        let t382 = c6_arm * t216 - s6_arm * t215;
-        let t384 = c6_arm * t229 + s6_arm * t272 + joint_velocities[5] * t382;
-        let t388 = t221 * s6_arm + t92 * c6_arm;
-        let t391 = c6_arm * t215 + s6_arm * t216;
-        let t392 = t227 + joint_velocities[5];
-        let t393 = t391 * t392;
-        let t394 = t388 * t393;
-        let t396 = t391 * t382;
-        let t401 = c6_arm * t235 + c4_arm * s6_arm;
-        let t405 = c4_arm * c6_arm - s6_arm * t235;
-        let t406 = t405 * t393;
-        let t410 = s5_arm * s6_arm;
-        let t411 = t410 * t393;
-        let t412 = s5_arm * c6_arm;
-        let t417 = t215 * t392;
-        let t418 = t382 * t392;
-        let t419 = t418 + t384;
-        let t427 = c6_arm * t272 - s6_arm * t229 - joint_velocities[5] * t391;
-        let t428 = t393 - t427;
-        let t431 = t391 * t391;
-        let t432 = t382 * t382;
-        let t433 = t431 - t432;
-        let t449 = t251 + joint_accelerations[5];
-        let t450 = t396 + t449;
-        let t452 = t392 * t392;
-        let t453 = t452 - t431;
-        let t456 = t418 - t384;
-        let t472 = t432 - t452;
-        let t474 = t396 - t449;
-        let t477 = t393 + t427;
-        let t507 = c6_arm * t165 - s6_arm * t317;
-        let t511 = c6_arm * t317 + s6_arm * t165;
-        let t512 = t432 + t452;
-        let t520 = c6_arm * t177 - s6_arm * t354;
-        let t527 = c6_arm * t333 - s6_arm * t184;
-        let t531 = s6_arm * t333 + c6_arm * t184;
-        let t549 = t431 + t452;
-        let t557 = c6_arm * t354 + s6_arm * t177;
+        let t8 = s2_arm * joint_velocities[0];
+        let t9 = joint_velocities[1] * t8;
+        let t10 = c2_arm * joint_accelerations[0];
+        let t11 = t9 - t10;
+        let t12 = t9 + t11;
+        let t14 = c2_arm * joint_velocities[0];
+        let t15 = t8 * t14;
+        let t16 = t15 - joint_accelerations[1];
+        let t17 = c2_arm * t16;
+        let t18 = t14 * t14;
+        let t19 = joint_velocities[1] * joint_velocities[1];
+        let t22 = t17 - s2_arm * (t18 - t19);
+        let t23 = t15 + joint_accelerations[1];
+        let t24 = s2_arm * t23;
+        let t25 = t8 * t8;
+        let t28 = t24 + c2_arm * (t19 - t25);
+        let t29 = s2_arm * joint_accelerations[0];
+        let t33 = 0.1524 * t10 + 9.81 * s2_arm;
+        let t34 = joint_velocities[1] * t14;
+        let t35 = t29 + t34;
+        let t36 = t34 + t35;
+        let t44 = 0.1524 * t29 - 9.81 * c2_arm;
+        let t46 = joint_velocities[0] * joint_velocities[0];
+        let t49 = joint_velocities[2] + joint_velocities[2];
+        let t51 = joints[2] * t36 - 0.1524 * t46 + t8 * t49;
+        let t52 = s2_arm * joints[2];
+        let t54 = 0.1524 * s2_arm;
+        let t55 = t25 + t19;
+        let t58 = joint_accelerations[2] - (t44 + joints[2] * t55);
+        let t60 = 0.1524 * c2_arm;
+        let t62 = joints[2] * t16;
+        let t64 = joint_velocities[1] * t49 - (t33 + t62);
+        let t66 = t54 * t58 + t60 * t64;
+        let t77 = joint_accelerations[3] - t11;
+        let t81 = s2_arm * c4_arm;
+        let t84 = s4_arm * t8 + c4_arm * joint_velocities[1];
+        let t85 = t14 + joint_velocities[3];
+        let t86 = t84 * t85;
+        let t88 = s2_arm * s4_arm;
+        let t91 = s4_arm * joint_velocities[1] - c4_arm * t8;
+        let t92 = t91 * t85;
+        let t93 = t88 * t92;
+        let t96 = t8 * t85;
+        let t101 = s4_arm * joint_accelerations[1] - c4_arm * t35
+            + joint_velocities[3] * t84;
+        let t104 = t91 * t84;
+        let t107 = t86 + t101;
+        let t120 = s4_arm * t35 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t91;
+        let t121 = t92 - t120;
+        let t125 = t91 * t91;
+        let t126 = t84 * t84;
+        let t127 = t125 - t126;
+        let t133 = t85 * t85;
+        let t134 = t133 - t125;
+        let t136 = t104 + t77;
+        let t139 = t86 - t101;
+        let t145 = t92 + t120;
+        let t147 = t126 - t133;
+        let t149 = t104 - t77;
+        let t160 = t81 * c5_arm + c2_arm * s5_arm;
+        let t163 = s5_arm * t91 + c5_arm * t85;
+        let t164 = t84 + joint_velocities[4];
+        let t165 = t163 * t164;
+        let t169 = t81 * s5_arm - c2_arm * c5_arm;
+        let t172 = c5_arm * t91 - s5_arm * t85;
+        let t173 = t172 * t164;
+        let t174 = t169 * t173;
+        let t176 = t120 + joint_accelerations[4];
+        let t179 = s4_arm * s5_arm;
+        let t180 = t179 * t173;
+        let t181 = s4_arm * c5_arm;
+        let t186 = t91 * t164;
+        let t187 = t18 + t19;
+        let t201 = c5_arm * t101 - s5_arm * t77 - joint_velocities[4] * t163;
+        let t204 = t172 * t163;
+        let t211 = t201 - t165;
+        let t216 = s4_arm * t52 - c4_arm * t60;
+        let t220 = s4_arm * t60 + c4_arm * t52;
+        let t221 = t125 + t133;
+        let t229 = c4_arm * t64 + s4_arm * t51;
+        let t233 = joints[2] * c4_arm;
+        let t235 = joints[2] * s4_arm;
+        let t244 = s5_arm * t101 + c5_arm * t77 + joint_velocities[4] * t172;
+        let t245 = t173 + t244;
+        let t249 = t172 * t172;
+        let t250 = t163 * t163;
+        let t251 = t249 - t250;
+        let t262 = t164 * t164;
+        let t263 = t262 - t249;
+        let t265 = t176 - t204;
+        let t268 = t165 + t201;
+        let t279 = t204 + t176;
+        let t281 = t250 - t262;
+        let t284 = t173 - t244;
+        let t299 = t88 * s6_arm - t160 * c6_arm;
+        let t302 = c6_arm * t164 - s6_arm * t172;
+        let t303 = t163 + joint_velocities[5];
+        let t304 = t302 * t303;
+        let t308 = t160 * s6_arm + t88 * c6_arm;
+        let t311 = c6_arm * t172 + s6_arm * t164;
+        let t312 = t311 * t303;
+        let t313 = t308 * t312;
+        let t315 = t244 + joint_accelerations[5];
+        let t320 = c6_arm * t181 + c4_arm * s6_arm;
+        let t324 = c4_arm * c6_arm - s6_arm * t181;
+        let t325 = t324 * t312;
+        let t330 = s5_arm * c6_arm;
+        let t332 = s5_arm * s6_arm;
+        let t333 = t332 * t312;
+        let t336 = t172 * t303;
+        let t338 = t126 + t133;
+        let t345 = c4_arm * t51 - s4_arm * t64;
+        let t358 = c5_arm * t216 + s5_arm * t54;
+        let t362 = c5_arm * t54 - s5_arm * t216;
+        let t363 = t249 + t262;
+        let t370 = c5_arm * t229 - s5_arm * t58;
+        let t374 = s5_arm * t233;
+        let t376 = c5_arm * t233;
+        let t393 = c6_arm * t201 + s6_arm * t176 + joint_velocities[5] * t302;
+        let t396 = t311 * t302;
+        let t407 = t304 + t393;
+        let t410 = t396 + t315;
+        let t412 = t303 * t303;
+        let t413 = t311 * t311;
+        let t414 = t412 - t413;
+        let t417 = t304 - t393;
+        let t433 = t302 * t302;
+        let t434 = t433 - t412;
+        let t436 = t396 - t315;
+        let t443 = c6_arm * t176 - s6_arm * t201 - joint_velocities[5] * t311;
+        let t444 = t312 + t443;
+        let t461 = t312 - t443;
+        let t464 = t413 - t433;
+        let t481 = t250 + t262;
+        let t489 = s5_arm * t229 + c5_arm * t58;
+        let t508 = c6_arm * t220 - s6_arm * t358;
+        let t512 = c6_arm * t358 + s6_arm * t220;
+        let t513 = t433 + t412;
+        let t521 = c6_arm * t345 - s6_arm * t370;
+        let t528 = c6_arm * t376 - s6_arm * t235;
+        let t532 = s6_arm * t376 + c6_arm * t235;
+        let t550 = t413 + t412;
+        let t558 = c6_arm * t370 + s6_arm * t345;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, s2_arm * t7,
-                c2_arm * t7 - s2_arm * t15, -t26, t31, 0.0, 0.1524 * t26, -(0.1524 * t31), 0.0, 0.0,
-                0.0, t41 * t42 - t15 * t44 + 0.1524 * t22 + c2_arm * t55,
-                joint_accelerations[0] * 0.1524 - t50 * t44 - t73,
-                0.1524 * t28 + t7 * t44 + t79 * t59 + s2_arm * t55, t55 * t44 - 0.1524 * t73, 0.0,
-                0.0, 0.0, 0.0, t98 - t99 * t107 - c2_arm * t110,
-                t99 * t123 + t92 * t115 + c2_arm * t129, t92 * t136 - t99 * t139 - c2_arm * t142,
-                c2_arm * t148 - (t99 * t150 + t92 * t152), c2_arm * t138 - (t99 * t114 + t98),
-                t165 * t139 - t169 * t170 - t79 * t123 + c2_arm * t177 - t92 * t62,
-                t169 * t152 - t165 * t190 - t79 * t115 - (t99 * t62 + c2_arm * t198), 0.0, 0.0, 0.0,
-                0.0, t218 - t221 * t229 + t92 * t232, t221 * t252 + t212 * t244 + t92 * t258,
-                t212 * t270 - t221 * t273 + t92 * t276, t212 * t287 - t221 * t289 + t92 * t292,
-                t221 * t243 - t218 + t92 * t272,
-                t313 * t273 - t317 * t318 + t165 * t252 - (t212 * t177 + t92 * t326),
-                t165 * t244 - (t317 * t287 + t313 * t347) - (t221 * t177 + t92 * t354), 0.0, 0.0,
-                0.0, 0.0, t376 * t384 + t394 + t212 * t396, t388 * t419 - t376 * t428 - t212 * t433,
-                t376 * t450 + t388 * t453 + t212 * t456, t376 * t472 - t388 * t474 - t212 * t477,
-                t376 * t418 - t394 - t212 * t449,
-                t507 * t450 - t511 * t512 - t313 * t428 - (t388 * t326 + t212 * t520),
-                t511 * t474 - t507 * t549 - t313 * t419 + t376 * t326 + t212 * t557, 0.0, 0.0, 0.0,
-                0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(c2_arm * t12),
+                t22, -t28, -(0.1524 * t22), c2_arm * t36 - s2_arm * t12, 0.1524 * t28,
+                t51 * t52 - t66, 0.1524 * t17 + t36 * t52 + t54 * t55 + s2_arm * t51,
+                c2_arm * t77 - (t81 * t86 + t93), t93 - t81 * t101 - c2_arm * t104,
+                joint_accelerations[0] * 0.1524 - t46 * t52 - 6.561679790026247 * t66,
+                t81 * t121 + t88 * t107 + c2_arm * t127, t88 * t134 - t81 * t136 - c2_arm * t139,
+                c2_arm * t145 - (t81 * t147 + t88 * t149), t160 * t165 - t174 + t88 * t176,
+                t60 * t187 - t12 * t52 + 0.1524 * t24 + c2_arm * t51,
+                t174 - t160 * t201 + t88 * t204,
+                t216 * t149 - t220 * t221 - t54 * t107 - (t81 * t58 + c2_arm * t229),
+                t160 * t245 + t169 * t211 + t88 * t251, t169 * t263 - t160 * t265 + t88 * t268,
+                t169 * t279 - t160 * t281 + t88 * t284, t299 * t304 - t313 - t169 * t315,
+                t220 * t136 - t216 * t338 - t54 * t121 + c2_arm * t345 - t88 * t58,
+                t220 * t211 - (t358 * t279 + t362 * t363) - (t160 * t345 + t88 * t370),
+                t299 * t393 + t313 + t169 * t396, t299 * t410 + t308 * t414 + t169 * t417,
+                t299 * t434 - t308 * t436 - t169 * t444, t308 * t407 - t299 * t461 - t169 * t464,
+                t362 * t265 - t358 * t481 + t220 * t245 - (t169 * t345 + t88 * t489),
+                t508 * t410 - t512 * t513 - t362 * t461 - (t308 * t489 + t169 * t521),
+                t512 * t436 - t508 * t550 - t362 * t407 + t299 * t489 + t169 * t558,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, -t5, -t13, joint_accelerations[1], t35, t39,
-                joint_velocities[1], ::overact::math::sign(joint_velocities[1]), 1.0,
-                -(joints[2] * t42 + t62), -(joints[2] * t13), t71 - t69, joints[2] * t71, 0.0, 0.0,
-                0.0, 0.0, s4_arm * t115 - t113, c4_arm * t115 - s4_arm * t123,
-                s4_arm * t139 + c4_arm * t136, s4_arm * t150 - c4_arm * t152, t113,
-                -(t182 * t170 + t184 * t139 + c4_arm * t62),
-                t182 * t152 + t184 * t190 + s4_arm * t62, 0.0, 0.0, 0.0, 0.0,
-                t229 * t235 - t238 + c4_arm * t232, c4_arm * t258 - (t235 * t252 + t237 * t244),
-                t235 * t273 - t237 * t270 + c4_arm * t276,
-                t235 * t289 - t237 * t287 + c4_arm * t292, t238 - t235 * t243 + c4_arm * t272,
-                t177 * t237 - c4_arm * t326 - (t333 * t318 + t335 * t273 + t184 * t252),
-                t335 * t347 - t333 * t287 - t184 * t244 + t177 * t235 - c4_arm * t354, 0.0, 0.0,
-                0.0, 0.0, t384 * t401 + t406 - t237 * t396, t405 * t419 - t401 * t428 + t237 * t433,
-                t401 * t450 + t405 * t453 - t237 * t456, t401 * t472 - t405 * t474 + t237 * t477,
-                t401 * t418 - t406 + t237 * t449,
-                t335 * t428 - (t527 * t512 + t531 * t450) + t237 * t520 - t326 * t405,
-                t527 * t474 + t531 * t549 + t335 * t419 + t326 * t401 - t237 * t557, 0.0, 0.0, 0.0,
-                0.0,
+                0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t15, -t10, -t29, t33, t25 - t18, t44,
+                joints[2] * t64, t64 - t62, t96, s4_arm * t107 - t96, -(joints[2] * t10),
+                c4_arm * t107 - s4_arm * t121, s4_arm * t136 + c4_arm * t134,
+                s4_arm * t147 - c4_arm * t149, t180 - t181 * t165 + c4_arm * t176,
+                -(joints[2] * t187 + t58), t201 * t181 - t180 + c4_arm * t204,
+                t233 * t149 + t235 * t221 + s4_arm * t58,
+                c4_arm * t251 - (t181 * t245 + t179 * t211),
+                t181 * t265 - t179 * t263 + c4_arm * t268,
+                t181 * t281 - t179 * t279 + c4_arm * t284, t320 * t304 - t325 + t179 * t315,
+                -(t233 * t338 + t235 * t136 + c4_arm * t58),
+                t374 * t363 - t376 * t279 - t235 * t211 + t345 * t181 - c4_arm * t370,
+                t393 * t320 + t325 - t179 * t396, t320 * t410 + t324 * t414 - t179 * t417,
+                t320 * t434 - t324 * t436 + t179 * t444, t324 * t407 - t320 * t461 + t179 * t464,
+                t345 * t179 - c4_arm * t489 - (t376 * t481 + t374 * t265 + t235 * t245),
+                t374 * t461 - (t528 * t513 + t532 * t410) + t179 * t521 - t489 * t324,
+                t528 * t436 + t532 * t550 + t374 * t407 + t489 * t320 - t179 * t558,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t21, -t5,
-                -t59, t62, joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, t123,
-                t115, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, s5_arm * t318 - c5_arm * t273,
-                s5_arm * t287 + c5_arm * t347, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t412 * t512 + t410 * t450 + c5_arm * t428,
-                c5_arm * t419 - (t412 * t474 + t410 * t549), 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
+                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t58, -t55, 0.0, 0.0, -t29,
+                0.0, 0.0, 0.0, 0.0, -t23, 0.0, t107, 0.0, 0.0, 0.0, 0.0, t121,
+                s5_arm * t279 + c5_arm * t363, 0.0, 0.0, 0.0, 0.0, s5_arm * t481 - c5_arm * t265,
+                t330 * t513 + t332 * t410 + c5_arm * t461,
+                c5_arm * t407 - (t330 * t436 + t332 * t550),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, -t110, t129, -t142, t148, t138, t177, -t198,
-                joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, -(t242 + s5_arm * t244),
-                s5_arm * t252 - c5_arm * t244, -(s5_arm * t273 + c5_arm * t270),
-                -(s5_arm * t289 + c5_arm * t287), t242, c5_arm * t177, -(s5_arm * t177), 0.0, 0.0,
-                0.0, 0.0, t411 - t384 * t412 - c5_arm * t396,
-                t412 * t428 + t410 * t419 + c5_arm * t433,
-                t410 * t453 - t412 * t450 - c5_arm * t456,
-                c5_arm * t477 - (t412 * t472 + t410 * t474), c5_arm * t449 - (t412 * t418 + t411),
-                c5_arm * t520 - t326 * t410, -(t326 * t412 + c5_arm * t557), 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t77, -t104, 0.0,
+                t127, -t139, t145, t186, 0.0, -(t186 + s5_arm * t211), -t229,
+                s5_arm * t245 - c5_arm * t211, -(s5_arm * t265 + c5_arm * t263),
+                -(s5_arm * t281 + c5_arm * t279), c5_arm * t315 - (t330 * t304 + t333), t345,
+                -(s5_arm * t345), t333 - t393 * t330 - c5_arm * t396,
+                t332 * t414 - t330 * t410 - c5_arm * t417,
+                c5_arm * t444 - (t330 * t434 + t332 * t436),
+                t330 * t461 + t332 * t407 + c5_arm * t464, c5_arm * t345,
+                c5_arm * t521 - t489 * t332, -(t489 * t330 + c5_arm * t558),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t232, t258, t276, t292, t272, -t326, -t354, joint_accelerations[4],
-                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                t417 + s6_arm * t419, c6_arm * t419 - s6_arm * t428, s6_arm * t450 + c6_arm * t453,
-                s6_arm * t472 - c6_arm * t474, -t417, -(c6_arm * t326), s6_arm * t326, 0.0, 0.0,
-                0.0, 0.0,
+                joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t176, 0.0, t204, 0.0, t251,
+                t268, t284, -t336, 0.0, -t370, t336 + s6_arm * t407, s6_arm * t410 + c6_arm * t414,
+                s6_arm * t434 - c6_arm * t436, c6_arm * t407 - s6_arm * t461, -t489,
+                -(c6_arm * t489), s6_arm * t489,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t396, t433, -t456, t477, t449,
-                t520, -t557, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0,
+                0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t315, 0.0,
+                0.0, -t396, -t417, t444, t464, 0.0, t521, -t558,
             ],
         ]
     }
