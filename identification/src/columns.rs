@@ -233,21 +233,37 @@ impl ColumnSet {
         let velocities = ask(Function::JointVelocities, split)?;
         let width = picked.len() + more;
         let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
-        for (place, column) in columns().enumerate() {
-            let (values, count, index) = match column.source {
-                Source::Robot(k) => (&robot, sizes.parameters, k),
-                Source::Payload(k) => (&payload, sizes.payload_parameters, k),
-            };
+        // Where the numbers of a row come from: places of the robot's columns, then the payload's.
+        let place = |wanted: fn(Source) -> Option<usize>| -> Vec<(usize, usize)> {
+            let all = columns().enumerate();
+            all.filter_map(|(to, column)| Some((to, wanted(column.source)?)))
+                .collect()
+        };
+        let own = place(|source| match source {
+            Source::Robot(k) => Some(k),
+            Source::Payload(_) => None,
+        });
+        let load = place(|source| match source {
+            Source::Payload(k) => Some(k),
+            Source::Robot(_) => None,
+        });
+        let sources = [
+            (&robot, sizes.parameters, own),
+            (&payload, sizes.payload_parameters, load),
+        ];
+        for (values, count, places) in &sources {
             if values.is_empty() {
                 continue;
             }
-            for (line, rows) in lines.iter_mut().enumerate() {
-                let from = values[line * count + index..]
-                    .iter()
-                    .step_by(count * sizes.dof);
-                let to = rows[place..].iter_mut().step_by(width);
-                to.zip(from).for_each(|(to, from)| *to = *from);
+            for (row, from) in values.chunks_exact(*count).enumerate() {
+                let start = row / sizes.dof * width;
+                let to = &mut lines[row % sizes.dof][start..start + width];
+                for &(place, index) in places {
+                    to[place] = from[index];
+                }
             }
+        }
+        for (place, column) in columns().enumerate() {
             let Some(joint) = column.joint() else {
                 continue;
             };

@@ -16,6 +16,7 @@ pub use csv_file::read_csv;
 pub use log::{Log, Reader, Samples};
 pub use mapping::{Gain, Mapping};
 pub use mat_file::read_mat;
+use rayon::prelude::*;
 
 use crate::error::{Error, Problem, suggestion};
 
@@ -35,6 +36,13 @@ pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error>
     } else {
         read_csv(path, mapping, payload)
     }
+}
+
+/// Reads several runs at once, each with a word on its payload.
+#[must_use]
+pub fn read_all(files: &[(&Path, bool)], mapping: &Mapping) -> Vec<Result<Log, Error>> {
+    let read = |&(path, payload): &(&Path, bool)| read(path, mapping, payload);
+    files.par_iter().map(read).collect()
 }
 
 /// The name by which a file is called in messages: as the caller gave it.
