@@ -155,7 +155,8 @@ impl Factor {
         for (place, (factor, weight)) in factors.iter().zip(weights).enumerate() {
             let y = factor.parameters();
             for (to, from) in selected.iter().chain([&y]).enumerate() {
-                let mut rows = stacked.view_mut((place * size, to), (size, 1));
+                let mut column = stacked.column_mut(to);
+                let mut rows = column.rows_mut(place * size, size);
                 rows.axpy(*weight, &factor.r.column(*from), 0.0);
             }
         }

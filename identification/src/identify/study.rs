@@ -10,7 +10,7 @@ use overact::Model;
 use serde::Serialize;
 
 use super::{
-    Experiment, Prepared, Progress, cross_validate, prepare,
+    Experiment, Prepared, Progress, cross_validate, estimate_all, prepare,
     result::{CrossValidation, Estimate, Stage},
     stages::Outcome,
     verdict::Thresholds,
