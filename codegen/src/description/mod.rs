@@ -36,7 +36,7 @@ pub use model::{
     Description, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned,
 };
 pub use parameter::StandardParameter;
-pub use settings::{Data, Factor, Friction, Identification, Normalisation};
+pub use settings::{Data, Factor, Friction, Identification, Normalisation, Reversals};
 
 use crate::diagnostic::{Diagnostics, Source};
 

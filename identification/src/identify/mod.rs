@@ -145,8 +145,8 @@ pub fn prepare(
         settings.seed,
     )?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
-    // Relations between columns are those of the model; the dead band is one of the data.
-    let columns = columns.with_dead_band(model, settings.velocity_dead_band, settings.seed)?;
+    // Relations between columns are those of the model; reversals are those of the data.
+    let columns = columns.with_reversals(model, settings)?;
     let observer = Observer {
         model,
         columns: &columns,
