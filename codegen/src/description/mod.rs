@@ -9,6 +9,7 @@
 //! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
 
 mod dimension;
+mod drives;
 mod experiment;
 mod expression;
 mod function;
@@ -31,6 +32,7 @@ mod tests;
 mod token;
 mod value;
 
+pub use drives::Drives;
 pub use experiment::{Body, Experiment, Run, Term, TrueParameter};
 pub use model::{
     Description, End, Joint, JointKind, Leg, Motion, Placement, Platform, PlatformHome, Spanned,
