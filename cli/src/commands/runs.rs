@@ -11,7 +11,7 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact::{Info, Model};
-use overact_identification::{Log, Mapping, Progress as Stage, Settings, data};
+use overact_identification::{Log, Progress as Stage, Settings, data};
 use overact_simulation::Record;
 use std::{
     collections::BTreeMap,
@@ -81,7 +81,7 @@ impl Arguments {
         if self.are_virtual() {
             self.made(robot, served, as_json)
         } else {
-            self.measured(robot, &served.info())
+            self.measured(robot, &served.info(), as_json)
         }
     }
 
@@ -96,7 +96,7 @@ impl Arguments {
     }
 
     /// Reads logs; the problems of all of them are reported together.
-    fn measured(&self, robot: &Robot, info: &Info<'_>) -> Result<Runs, Failure> {
+    fn measured(&self, robot: &Robot, info: &Info<'_>, as_json: bool) -> Result<Runs, Failure> {
         let mapping = mapping(robot, info)?;
         let of = |paths: &[PathBuf], payload| -> Vec<(PathBuf, bool)> {
             paths.iter().map(|path| (path.clone(), payload)).collect()
@@ -111,7 +111,9 @@ impl Arguments {
             .collect();
         let mut failures: Vec<Failure> = Vec::new();
         let mut logs = Vec::new();
-        for log in data::read_all(&files, &mapping) {
+        let bar = Progress::new("reading", as_json);
+        let tell = |part: f64| bar.at(part, "");
+        for log in data::read_all(&files, &mapping, &tell) {
             match log {
                 Ok(log) => logs.push(log),
                 Err(error) => failures.push(error.into()),

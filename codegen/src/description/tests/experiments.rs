@@ -47,7 +47,7 @@ terms = []
         "5:1 unknown key `bandwith`; did you mean `bandwidth`?",
         "6:11 `encoder`: expected one value or 1, one for each actuator, found 2",
         "7:16 `torque_limit`: expected a torque (N m), found a force (127 N)",
-        "8:17 `encoder_delay`: expected a value of at least 0, found -1 ms",
+        "8:17 `encoder_delay`: expected a value at least 0, found -0.001 s",
         "10:8 `gain`: expected one value or 1, one for each actuator, found 2",
         "11:11 `cogging`: expected a torque (N m), found a force (0.3 N)",
         "12:22 `flexible_stiffness`: expected a stiffness (N m/rad), found a stiffness (10 N/m)",
