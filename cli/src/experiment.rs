@@ -6,7 +6,7 @@ use crate::{
 };
 use overact::Info;
 use overact_codegen::description;
-use overact_simulation::{Experiment, Run, Term, Trajectory};
+use overact_simulation::{Drives, Experiment, Run, Term, Trajectory};
 use std::collections::BTreeMap;
 
 /// The virtual experiment of a robot, and true parameters that have no effect on its model.
@@ -41,14 +41,31 @@ pub(crate) fn experiment(
         feed_forward: table.feed_forward,
         project_internal: table.project_internal,
         encoder_resolution: table.encoder.clone(),
+        encoder_delay_s: table.encoder_delay,
         torque_noise: table.torque_noise.clone(),
         torque_limit: table.torque_limit.clone(),
+        drives: drives(&table.drives),
         seed: table.seed,
         parameters: all().map(|parameter| value(parameter.name)).collect(),
         runs: table.runs.iter().map(|run| converted(run, info)).collect(),
         ..Experiment::default()
     };
     Ok((experiment, without_effect))
+}
+
+/// The drives; what the description leaves out is ideal.
+fn drives(table: &description::Drives) -> Drives {
+    let list = |values: &Option<Vec<f64>>| values.clone().unwrap_or_default();
+    Drives {
+        gain: list(&table.gain),
+        delay_s: table.delay,
+        current_bandwidth_hz: list(&table.current_bandwidth),
+        cogging: list(&table.cogging),
+        cogging_periods: list(&table.cogging_periods),
+        flexible_hz: list(&table.flexible_frequency),
+        flexible_damping: table.flexible_damping,
+        flexible_stiffness: list(&table.flexible_stiffness),
+    }
 }
 
 /// True values of the parameters by name, as the description gives them; the others are zero.

@@ -2,6 +2,7 @@
 //! results to show beside the own ones.
 
 use crate::{
+    drawing,
     failure::{Failure, Problem},
     load::Robot,
     output,
@@ -159,12 +160,13 @@ fn html(
         ),
     ];
     let description = &robot.description;
+    let drawing = drawing::svg(&robot.model.mechanism);
     Ok(page(&Contents {
         identification: result,
         units: &Units::new(info),
         summary: Some(description.summary.as_str()).filter(|text| !text.is_empty()),
         source: Some(description.source.as_str()).filter(|text| !text.is_empty()),
-        drawing: None,
+        drawing: Some(&drawing),
         published,
         attachments: &attachments,
     }))

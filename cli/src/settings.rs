@@ -5,7 +5,7 @@ use crate::{
     load::Robot,
 };
 use overact::Info;
-use overact_codegen::description::{Factor, Friction, Normalisation};
+use overact_codegen::description::{Factor, Friction, Normalisation, Reversals};
 use overact_identification::{Gain, Mapping, Settings};
 
 /// The settings of an identification from runs sampled at `frequency` (Hz).
@@ -19,6 +19,7 @@ pub(crate) fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settin
         skip_start: table.skip_start.unwrap_or(0),
         skip_end: table.skip_end.unwrap_or(0),
         velocity_dead_band: table.velocity_dead_band,
+        averaged_reversals: table.reversals == Reversals::Averaged,
         // Without essential parameters the elimination ends before it starts.
         r_sigma: if table.essential {
             table.r_sigma

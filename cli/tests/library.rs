@@ -284,10 +284,12 @@ fn numbers(line: &str) -> Vec<f64> {
     cells.collect::<Result<_, _>>().expect("numbers")
 }
 
-/// Two seconds determine a part of the parameters; those are the true ones.
+/// The true base parameters come back within three of the deviations that allow for correlated
+/// residuals: at least 95 % of them, of each robot and model.
 #[test]
 fn all_are_identified() {
     let bench = Bench::new();
+    let (mut all, mut within) = (0, 0);
     for name in robots() {
         bench.write("my.toml", &shortened(&name, "2 s"));
         let document = bench.json(&["identify", "my.toml"]);
@@ -305,33 +307,37 @@ fn all_are_identified() {
             assert_eq!(estimate["stage"], "base", "{name}");
             let error = number(&estimate["relative_error_percent"]);
             assert!(error < 10.0, "{name}: {error} %");
-            assert_estimate(&name, list(&estimate["parameters"]));
+            let parameters = list(&estimate["parameters"]);
+            let inside = honest(&name, parameters);
+            println!("{name}: {inside} of {}", parameters.len());
+            assert!(20 * inside >= 19 * parameters.len(), "{name}: {inside}");
+            within += inside;
+            all += parameters.len();
         }
     }
+    println!("all: {within} of {all}");
+    assert!(20 * within >= 19 * all, "{within} of {all}");
 }
 
-/// Nine of ten parameters lie within three standard deviations of the truth, or very near; and those
-/// that the run determines well, of which there are some, are near in any case.
-fn assert_estimate(name: &str, parameters: &[Value]) {
+/// How many parameters lie within three honest deviations of the truth. Some are determined well, and
+/// those are near it in any case, so that wide deviations can't make up for bad values.
+fn honest(name: &str, parameters: &[Value]) -> usize {
     let (mut within, mut determined) = (0, 0);
     for parameter in parameters {
         let of = |key: &str| number(&parameter[key]);
-        let (truth, deviation) = (of("true_value"), of("standard_deviation"));
+        let (truth, deviation) = (of("true_value"), of("correlated_standard_deviation"));
+        assert!(deviation >= of("standard_deviation"), "{name}: {parameter}");
         let error = (of("value") - truth).abs();
-        within += usize::from(error < 3.0 * deviation + 0.02 * truth.abs());
-        if of("relative_standard_deviation_percent") < 5.0 {
+        within += usize::from(error <= 3.0 * deviation);
+        if 100.0 * deviation < 5.0 * of("value").abs() {
             determined += 1;
-            let largest = 0.1 * truth.abs() + 5.0 * deviation;
+            let largest = 0.05 * truth.abs() + 5.0 * deviation;
             assert!(error < largest, "{name}: {parameter}");
         }
     }
     assert!(
-        10 * within >= 9 * parameters.len(),
-        "{name}: {within} of {}",
-        parameters.len()
-    );
-    assert!(
         determined >= 3 && 6 * determined >= parameters.len(),
         "{name}: {determined}"
     );
+    within
 }

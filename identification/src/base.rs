@@ -195,7 +195,7 @@ fn random_regressor(
     let all: Vec<usize> = (0..width).collect();
     let states = [&pose[..], &twist, &acceleration];
     let lines = columns
-        .evaluate(model, &states, samples, true, (&all, 0))
+        .evaluate(model, &states, (samples, 0.0), true, (&all, 0))
         .map_err(|error| Error::from(Problem::new(error.to_string())))?;
     let mut regressor = DMatrix::zeros(samples * r, width);
     for sample in 0..samples {

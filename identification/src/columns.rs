@@ -5,6 +5,10 @@
 //! fs_neg: the columns fv and fs where the joint's velocity is positive or negative, zero
 //! elsewhere. The offset is (fs_pos - fs_neg)/2 then and has no column of its own.
 //!
+//! The sign of a joint's velocity changes between two samples. Torques and accelerations stand for the
+//! means over the sampling intervals, so the columns fs can take the mean of the sign over the interval,
+//! too; the sign at the sample alone is early or late by up to half an interval, at every reversal.
+//!
 //! Around standstill the sign of a measured velocity is noise. Within a dead band the columns fs can
 //! be zero.
 
@@ -12,6 +16,7 @@ use overact::{Body, Function, Model, Parameter, SampleError, Symbol};
 
 use crate::{
     error::{Error, Problem},
+    settings::Settings,
     states::random_states,
 };
 
@@ -54,9 +59,19 @@ pub struct Column {
     pub body: Body,
     /// The joint, and the direction of its motion, to which a friction parameter is confined.
     pub direction: Option<(usize, Direction)>,
-    /// The joint of a Coulomb parameter and the speed below which its column is zero.
-    dead_band: Option<(usize, f64)>,
+    /// How the column of a Coulomb parameter is evaluated around reversals of its joint.
+    reversal: Option<Reversal>,
     source: Source,
+}
+
+/// The column of a Coulomb parameter around reversals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Reversal {
+    joint: usize,
+    /// The speed below which the column is zero.
+    band: f64,
+    /// Whether the sign is the mean over the sampling interval.
+    averaged: bool,
 }
 
 impl Column {
@@ -69,28 +84,31 @@ impl Column {
             symbol: parameter.symbol,
             body: parameter.body,
             direction: None,
-            dead_band: None,
+            reversal: None,
             source,
         }
     }
 
-    /// The joint on whose velocity it depends whether the column is zero.
+    /// The joint on whose motion the column depends beside the model.
     fn joint(&self) -> Option<usize> {
         let split = self.direction.map(|(joint, _)| joint);
-        split.or(self.dead_band.map(|(joint, _)| joint))
+        split.or(self.reversal.map(|reversal| reversal.joint))
     }
 
-    /// Whether the column is not zero at a velocity of its joint.
-    fn acts(&self, velocity: f64) -> bool {
-        let moves = self
-            .dead_band
-            .is_none_or(|(_, band)| velocity.abs() >= band);
-        moves
-            && match self.direction {
-                None => true,
-                Some((_, Direction::Positive)) => velocity > 0.0,
-                Some((_, Direction::Negative)) => velocity < 0.0,
-            }
+    /// The factor of the model's column at a velocity of its joint, which changes by `step` in a sampling
+    /// interval.
+    fn factor(&self, velocity: f64, step: f64) -> f64 {
+        let sign = match self.reversal {
+            Some(reversal) if velocity.abs() < reversal.band => return 0.0,
+            Some(reversal) if reversal.averaged => mean_sign(velocity, step),
+            _ => mean_sign(velocity, 0.0),
+        };
+        // The model's column has the sign of the velocity or, of fv, the velocity itself.
+        match self.direction {
+            None => sign * velocity.signum(),
+            Some((_, Direction::Positive)) => 0.5 * (1.0 + sign) * velocity.signum(),
+            Some((_, Direction::Negative)) => 0.5 * (1.0 - sign) * -velocity.signum(),
+        }
     }
 
     /// The column of a friction parameter split by the direction of its joint.
@@ -154,22 +172,23 @@ impl ColumnSet {
         Ok(Self { columns })
     }
 
-    /// The same columns, those of Coulomb friction being zero where the speed of their joint is below
-    /// `band` (rad/s or m/s).
+    /// The same columns, those of Coulomb friction being zero where the speed of their joint is below the
+    /// dead band of the settings, and having the mean sign over a sampling interval where these ask
+    /// for it.
     ///
     /// # Errors
     /// A friction parameter whose joint can't be recognised.
-    pub fn with_dead_band(
-        mut self,
-        model: &dyn Model,
-        band: f64,
-        seed: u64,
-    ) -> Result<Self, Error> {
-        if band > 0.0 {
-            let joints = friction_joints(model, seed)?;
+    pub fn with_reversals(mut self, model: &dyn Model, settings: &Settings) -> Result<Self, Error> {
+        let (band, averaged) = (settings.velocity_dead_band, settings.averaged_reversals);
+        if band > 0.0 || averaged {
+            let joints = friction_joints(model, settings.seed)?;
             for column in &mut self.columns {
                 if let (Source::Robot(index), Symbol::Fs) = (column.source, column.symbol) {
-                    column.dead_band = joints[index].map(|joint| (joint, band));
+                    column.reversal = joints[index].map(|joint| Reversal {
+                        joint,
+                        band,
+                        averaged,
+                    });
                 }
             }
         }
@@ -202,9 +221,9 @@ impl ColumnSet {
             .collect()
     }
 
-    /// Evaluates the columns `picked` in case 1: for each of the r lines, samples x (picked + `more`),
-    /// row-major, with room for more columns behind. The payload's are zero in an unloaded run,
-    /// eq. (49).
+    /// Evaluates the columns `picked` in case 1 at samples one sampling `interval` (s) apart: for each of
+    /// the r lines, samples x (picked + `more`), row-major, with room for more columns behind. The
+    /// payload's are zero in an unloaded run, eq. (49).
     ///
     /// # Errors
     /// The first sample at which the model has no value.
@@ -212,7 +231,7 @@ impl ColumnSet {
         &self,
         model: &dyn Model,
         states: &[&[f64]; 3],
-        samples: usize,
+        (samples, interval): (usize, f64),
         loaded: bool,
         (picked, more): (&[usize], usize),
     ) -> Result<Vec<Vec<f64>>, SampleError> {
@@ -230,35 +249,65 @@ impl ColumnSet {
         let has_payload = columns().any(|column| matches!(column.source, Source::Payload(_)));
         let robot = ask(Function::IdmRedPlatform, true)?;
         let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
+        let averaged = columns().any(|column| column.reversal.is_some_and(|own| own.averaged));
         let velocities = ask(Function::JointVelocities, split)?;
+        let accelerations = ask(Function::JointAccelerations, averaged)?;
         let width = picked.len() + more;
         let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
-        for (place, column) in columns().enumerate() {
-            let (values, count, index) = match column.source {
-                Source::Robot(k) => (&robot, sizes.parameters, k),
-                Source::Payload(k) => (&payload, sizes.payload_parameters, k),
-            };
+        // Where the numbers of a row come from: places of the robot's columns, then the payload's.
+        let place = |wanted: fn(Source) -> Option<usize>| -> Vec<(usize, usize)> {
+            let all = columns().enumerate();
+            all.filter_map(|(to, column)| Some((to, wanted(column.source)?)))
+                .collect()
+        };
+        let own = place(|source| match source {
+            Source::Robot(k) => Some(k),
+            Source::Payload(_) => None,
+        });
+        let load = place(|source| match source {
+            Source::Payload(k) => Some(k),
+            Source::Robot(_) => None,
+        });
+        let sources = [
+            (&robot, sizes.parameters, own),
+            (&payload, sizes.payload_parameters, load),
+        ];
+        for (values, count, places) in &sources {
             if values.is_empty() {
                 continue;
             }
-            for (line, rows) in lines.iter_mut().enumerate() {
-                let from = values[line * count + index..]
-                    .iter()
-                    .step_by(count * sizes.dof);
-                let to = rows[place..].iter_mut().step_by(width);
-                to.zip(from).for_each(|(to, from)| *to = *from);
+            for (row, from) in values.chunks_exact(*count).enumerate() {
+                let start = row / sizes.dof * width;
+                let to = &mut lines[row % sizes.dof][start..start + width];
+                for &(place, index) in places {
+                    to[place] = from[index];
+                }
             }
+        }
+        for (place, column) in columns().enumerate() {
             let Some(joint) = column.joint() else {
                 continue;
             };
             let rates = velocities[joint..].iter().step_by(sizes.joints);
-            for (sample, _) in rates.enumerate().filter(|(_, rate)| !column.acts(**rate)) {
-                lines
-                    .iter_mut()
-                    .for_each(|rows| rows[sample * width + place] = 0.0);
+            for (sample, rate) in rates.enumerate() {
+                let change = accelerations.get(sample * sizes.joints + joint);
+                let factor = column.factor(*rate, change.map_or(0.0, |a| a * interval));
+                if factor != 1.0 {
+                    let place = sample * width + place;
+                    lines.iter_mut().for_each(|rows| rows[place] *= factor);
+                }
             }
         }
         Ok(lines)
+    }
+}
+
+/// The mean of the sign over an interval in which a value changes by `step`, `value` in its middle.
+fn mean_sign(value: f64, step: f64) -> f64 {
+    if value == 0.0 {
+        0.0
+    } else {
+        (2.0 * value / step.abs()).clamp(-1.0, 1.0)
     }
 }
 
@@ -347,10 +396,27 @@ fn friction_joints(model: &dyn Model, seed: u64) -> Result<Vec<Option<usize>>, E
                     parameter.name
                 ))
                 .column(parameter.name)
-                .help("turn asymmetric friction off for this robot"),
+                .help(
+                    "choose symmetric friction, sampled reversals and no dead band for this robot",
+                ),
             ),
         }
     }
     Error::check(problems)?;
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mean_sign;
+
+    #[test]
+    fn the_mean_sign_is_that_of_the_interval() {
+        // From -0.5 to 1.5: a quarter of the interval is negative.
+        assert_eq!(mean_sign(0.5, 2.0), 0.5);
+        assert_eq!(mean_sign(-0.5, -2.0), -0.5);
+        assert_eq!(mean_sign(0.0, 0.0), 0.0);
+        assert_eq!(mean_sign(1e-9, 0.0), 1.0);
+        assert_eq!(mean_sign(-3.0, 2.0), -1.0);
+    }
 }

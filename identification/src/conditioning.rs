@@ -229,8 +229,9 @@ fn orthogonalised(columns: &mut [f64], n: usize) -> f64 {
                 }
                 turned = true;
                 let zeta = (b - a) / (2.0 * c);
-                let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-                let cosine = 1.0 / t.hypot(1.0);
+                // Where the square overflows the rotation is none, as it should be.
+                let t = zeta.signum() / (zeta.abs() + (zeta * zeta + 1.0).sqrt());
+                let cosine = 1.0 / (t * t + 1.0).sqrt();
                 let sine = cosine * t;
                 let (left, right) = columns.split_at_mut(q * n);
                 for (x, y) in left[p * n..(p + 1) * n].iter_mut().zip(&mut right[..n]) {

@@ -64,6 +64,34 @@ pub(crate) fn eliminate(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) 
     result
 }
 
+/// The rank of the columns of `matrix` named by `order`, and the norm of the part of its last column that
+/// lies outside their span.
+pub(crate) fn residual(matrix: &DMatrix<f64>, order: &[usize], tolerance: f64) -> (usize, f64) {
+    let count = order.len();
+    let mut work = DMatrix::zeros(matrix.nrows(), count + 1);
+    let norms: Vec<f64> = order
+        .iter()
+        .map(|&column| matrix.column(column).norm())
+        .collect();
+    let largest = norms.iter().copied().fold(0.0, f64::max);
+    for (k, (&column, &norm)) in order.iter().zip(&norms).enumerate() {
+        if norm > ZERO_TOLERANCE * largest {
+            work.set_column(k, &(matrix.column(column) / norm));
+        }
+    }
+    work.set_column(count, &matrix.column(matrix.ncols() - 1));
+    let mut rank = 0;
+    for k in 0..count {
+        let rest = work.nrows() - rank;
+        if rest > 0 && work.view((rank, k), (rest, 1)).norm() >= tolerance {
+            reflect(&mut work, rank, k);
+            rank += 1;
+        }
+    }
+    let rest = work.nrows() - rank;
+    (rank, work.view((rank, count), (rest, 1)).norm())
+}
+
 /// Zeroes column `k` below row `row` by a Householder reflection of it and all columns after it.
 fn reflect(work: &mut DMatrix<f64>, row: usize, k: usize) {
     let (rows, columns) = work.shape();
@@ -94,7 +122,7 @@ fn back_substitute(work: &DMatrix<f64>, places: &[usize], k: usize) -> Vec<f64> 
 mod tests {
     use nalgebra::DMatrix;
 
-    use super::eliminate;
+    use super::{eliminate, residual};
 
     #[test]
     fn relations_come_back() {
@@ -114,6 +142,17 @@ mod tests {
         let (column, coefficients) = &result.dependent[0];
         assert_eq!(*column, 2);
         assert!((coefficients[0].1 - 3.0).abs() < 1e-13 && (coefficients[1].1 + 0.5).abs() < 1e-13);
+        // Column 4 lies outside the span of the first three, by what it has left.
+        let (rank, norm) = residual(&matrix, &[0, 1, 2, 3], 1e-9);
+        let plane = matrix.columns(0, 2).clone_owned();
+        let y = matrix.column(4).clone_owned();
+        let nearest = plane
+            .clone()
+            .svd(true, true)
+            .solve(&y, 1e-14)
+            .expect("a solution");
+        assert_eq!(rank, 2);
+        assert!((norm - (y - plane * nearest).norm()).abs() < 1e-10);
         // In another order another column is the dependent one.
         assert_eq!(eliminate(&matrix, &[2, 1, 0], 1e-9).kept, [2, 1]);
     }

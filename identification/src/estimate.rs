@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::{
-    elimination::eliminate,
+    elimination::residual,
     error::{Error, Problem},
     factor::Factor,
     regression::{System, condition_number},
@@ -143,6 +143,25 @@ pub fn estimate(
     selected: &[usize],
     settings: &Settings,
 ) -> Result<Estimation, Error> {
+    let mut estimation = fit(system, selected, settings)?;
+    estimation.condition_number = condition(system, selected);
+    Ok(estimation)
+}
+
+/// The condition number of the columns `selected`, neither weighted nor scaled.
+pub(crate) fn condition(system: &System, selected: &[usize]) -> f64 {
+    let ones = vec![1.0; system.lines.len()];
+    let reduced = Factor::reduced_together(&system.lines, &ones, selected);
+    condition_number(&reduced.triangle)
+}
+
+/// [`estimate`] without the condition number, which costs most and which the steps of an elimination
+/// do not need; it is not a number.
+pub(crate) fn fit(
+    system: &System,
+    selected: &[usize],
+    settings: &Settings,
+) -> Result<Estimation, Error> {
     let unknowns = selected.len();
     let equations: usize = system.lines.iter().map(Factor::equations).sum();
     if unknowns == 0 || equations <= unknowns {
@@ -152,23 +171,22 @@ pub fn estimate(
         .help("record longer runs, decimate less or estimate fewer parameters")
         .into());
     }
-    let ones = vec![1.0; system.lines.len()];
     let weights = if settings.weighted {
         weights(system, selected)
     } else {
-        ones.clone()
+        vec![1.0; system.lines.len()]
     };
-    let weighted = Factor::merged(&system.lines, &weights);
     let Solution {
         values,
         inverse,
         residual_norm,
-    } = solve(&weighted, selected)?;
+    } = solve(&system.lines, &weights, selected)?;
+    let sums = system.lines.iter().zip(&weights);
+    let sum = sums.map(|(line, weight)| weight * line.residual_sum(selected, &values));
     let deviation = residual_deviation(
-        &weighted,
-        selected,
-        &values,
+        (equations, unknowns),
         residual_norm,
+        sum.sum(),
         settings.normalisation,
     );
     let standard_deviations: Vec<f64> = inverse
@@ -180,7 +198,6 @@ pub fn estimate(
         .zip(&standard_deviations)
         .map(|(value, deviation)| percent(*deviation, value.abs()))
         .collect();
-    let unweighted = Factor::merged(&system.lines, &ones);
     let lines = line_errors(system, selected, &values);
     let (residual_norm, measured_norm) = overall(&lines);
     Ok(Estimation {
@@ -188,7 +205,7 @@ pub fn estimate(
         standard_deviations,
         residual_norm,
         relative_error_percent: percent(residual_norm, measured_norm),
-        condition_number: condition_number(&unweighted.reduced(selected).triangle),
+        condition_number: f64::NAN,
         equations,
         residual_deviation: deviation,
         lines,
@@ -206,9 +223,9 @@ struct Solution {
     residual_norm: f64,
 }
 
-/// Solves R_1 χ = Q_1ᵀ Y (44).
-fn solve(factor: &Factor, selected: &[usize]) -> Result<Solution, Error> {
-    let reduced = factor.reduced(selected);
+/// Solves R_1 χ = Q_1ᵀ Y (44) of weighted lines.
+fn solve(lines: &[Factor], weights: &[f64], selected: &[usize]) -> Result<Solution, Error> {
+    let reduced = Factor::reduced_together(lines, weights, selected);
     let identity = DMatrix::identity(selected.len(), selected.len());
     let values = reduced.triangle.solve_upper_triangular(&reduced.rhs);
     let inverse = reduced.triangle.solve_upper_triangular(&identity);
@@ -228,21 +245,18 @@ fn solve(factor: &Factor, selected: &[usize]) -> Result<Solution, Error> {
     }
 }
 
-/// σ_ρ of a system, (46) or the sample variance.
+/// σ_ρ of a system of equations in unknowns from the norm of its residual and the sum over it, (46) or
+/// the sample variance.
 fn residual_deviation(
-    factor: &Factor,
-    selected: &[usize],
-    values: &[f64],
+    (equations, unknowns): (usize, usize),
     norm: f64,
+    sum: f64,
     normalisation: Normalisation,
 ) -> f64 {
-    let count = factor.equations() as f64;
+    let count = equations as f64;
     let square = match normalisation {
-        Normalisation::Unbiased => norm * norm / (count - selected.len() as f64),
-        Normalisation::SampleVariance => {
-            let sum = factor.residual_sum(selected, values);
-            (norm * norm - sum * sum / count).max(0.0) / (count - 1.0)
-        }
+        Normalisation::Unbiased => norm * norm / (count - unknowns as f64),
+        Normalisation::SampleVariance => (norm * norm - sum * sum / count).max(0.0) / (count - 1.0),
     };
     square.sqrt()
 }
@@ -261,9 +275,9 @@ fn weights(system: &System, selected: &[usize]) -> Vec<f64> {
         .lines
         .iter()
         .map(|line| {
-            let own = eliminate(line.matrix(), selected, DATA_RANK_TOLERANCE).kept;
-            let freedom = line.equations().saturating_sub(own.len()).max(1) as f64;
-            let deviation = line.reduced(&own).residual_norm / freedom.sqrt();
+            let (own, norm) = residual(line.matrix(), selected, DATA_RANK_TOLERANCE);
+            let freedom = line.equations().saturating_sub(own).max(1) as f64;
+            let deviation = norm / freedom.sqrt();
             1.0 / deviation.max(floor)
         })
         .collect();

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::elimination::eliminate;
+use crate::{elimination::residual, estimate::DATA_RANK_TOLERANCE};
 
 /// Rows are taken in blocks of this many times the number of columns.
 const BLOCK_RATIO: usize = 4;
@@ -123,8 +123,7 @@ impl Factor {
 
     /// The smallest ||Y - W χ|| of parameters in the columns `selected`, which may be dependent.
     pub(crate) fn smallest_residual(&self, selected: &[usize]) -> f64 {
-        let kept = eliminate(&self.r, selected, 1e-10).kept;
-        self.reduced(&kept).residual_norm
+        residual(&self.r, selected, DATA_RANK_TOLERANCE).1
     }
 
     /// Σ(Y - W χ) over all equations.
@@ -141,10 +140,27 @@ impl Factor {
     /// The factor of the columns `selected` and Y: R_1 (upper triangular), the right-hand side
     /// Q_1ᵀ Y and the smallest possible residual norm.
     pub(crate) fn reduced(&self, selected: &[usize]) -> Reduced {
+        Self::reduced_together(std::slice::from_ref(self), &[1.0], selected)
+    }
+
+    /// The same for the equations of several factors, each scaled by a weight.
+    pub(crate) fn reduced_together(
+        factors: &[Self],
+        weights: &[f64],
+        selected: &[usize],
+    ) -> Reduced {
         let p = selected.len();
-        let mut columns: Vec<usize> = selected.to_vec();
-        columns.push(self.parameters());
-        let r = self.r.select_columns(&columns).qr().r();
+        let size = factors.first().map_or(0, |factor| factor.r.nrows());
+        let mut stacked = DMatrix::zeros(size * factors.len(), p + 1);
+        for (place, (factor, weight)) in factors.iter().zip(weights).enumerate() {
+            let y = factor.parameters();
+            for (to, from) in selected.iter().chain([&y]).enumerate() {
+                let mut column = stacked.column_mut(to);
+                let mut rows = column.rows_mut(place * size, size);
+                rows.axpy(*weight, &factor.r.column(*from), 0.0);
+            }
+        }
+        let r = stacked.qr().r();
         let rows = r.nrows();
         let residual_norm = if rows > p {
             r.view((p, p), (rows - p, 1)).norm()

@@ -178,7 +178,13 @@ impl Observer<'_> {
         let states = [pose, twist, acceleration];
         let mut platform = self
             .columns
-            .evaluate(self.model, &states, count, motion.payload, (self.base, 1))
+            .evaluate(
+                self.model,
+                &states,
+                (count, 1.0 / motion.sampling_frequency),
+                motion.payload,
+                (self.base, 1),
+            )
             .map_err(at)?;
         let width = self.base.len() + 1;
         let mut y = vec![0.0; count * r];

@@ -51,6 +51,9 @@ pub struct Settings {
     /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero: around
     /// standstill the sign of a measured velocity is noise. 0 is no dead band.
     pub velocity_dead_band: f64,
+    /// Whether Coulomb columns take the mean sign of the joint's velocity over a sampling interval, not
+    /// the sign at the sample: then the time of a reversal counts to a fraction of the interval.
+    pub averaged_reversals: bool,
     /// r_σ: the elimination of parameters ends when the largest relative standard deviation is
     /// less than this many times the smallest one.
     pub r_sigma: f64,
@@ -91,6 +94,7 @@ impl Settings {
             skip_start: 0,
             skip_end: 0,
             velocity_dead_band: 0.0,
+            averaged_reversals: false,
             r_sigma: 10.0,
             keep_significant: false,
             normalisation: Normalisation::Unbiased,

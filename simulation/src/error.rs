@@ -103,7 +103,7 @@ impl fmt::Display for RunError {
             ),
             Cause::Lost { actuator, error } => write!(
                 f,
-                "actuator `{actuator}` is off by {error:.2e} (rad or m); raise the torque limit or lower the accelerations of the trajectory"
+                "actuator `{actuator}` is off by {error:.2e} (rad or m); raise the torque limit, or lower the accelerations of the trajectory or the bandwidth of the controller"
             ),
         }
     }

@@ -6,7 +6,7 @@
 use overact::{Info, Sizes};
 use serde::{Deserialize, Serialize};
 
-use crate::{error::Problem, trajectory::Trajectory, validation};
+use crate::{drives::Drives, error::Problem, trajectory::Trajectory, validation};
 
 /// A virtual experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,10 +28,14 @@ pub struct Experiment {
     pub project_internal: bool,
     /// Encoder resolution of each of the n actuators, rad or m; 0 is ideal. Empty: all ideal.
     pub encoder_resolution: Vec<f64>,
+    /// Time by which the positions that controller and log see are late, s, rounded to samples.
+    pub encoder_delay_s: f64,
     /// Standard deviation of the torque measurement of each of the n actuators, N m or N. Empty: 0.
     pub torque_noise: Vec<f64>,
     /// Largest absolute torque of each of the n actuators, N m or N.
     pub torque_limit: Option<Vec<f64>>,
+    /// What the drives make of the controller's torques.
+    pub drives: Drives,
     /// Seed of all noise.
     pub seed: u64,
     /// True parameters of the robot in the model's column order, the payload's last (SI units).
@@ -71,8 +75,10 @@ impl Default for Experiment {
             feed_forward: true,
             project_internal: true,
             encoder_resolution: Vec::new(),
+            encoder_delay_s: 0.0,
             torque_noise: Vec::new(),
             torque_limit: None,
+            drives: Drives::default(),
             seed: 0,
             parameters: Vec::new(),
             nominal_parameters: None,

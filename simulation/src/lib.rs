@@ -10,7 +10,7 @@
 //!      |                                                  v
 //!      +--q_d--> (+) --> PD, filtered derivative ------> (+) --> projection (50) --> limit --τ--+
 //!                 ^ -                                                                           |
-//!                 +---- encoder <--q-- plant  v̇ = M^-1 (Γ¹(τ) - bias) <----- held torques ------+
+//!                 +---- encoder <--q-- plant  v̇ = M^-1 (Γ¹(τ) - bias) <-- drives, held torques -+
 //! ```
 //!
 //! The stages, each in a module of its own:
@@ -18,8 +18,9 @@
 //! - [`trajectory`]: desired displacement of the platform and its derivatives;
 //! - `reference`: the desired motion of platform and actuators, block by block;
 //! - `controller`: PD with filtered derivative, feed-forward, projection of internal torques;
+//! - [`drives`]: gains, delay, current loop, cogging and flexibility between command and robot;
 //! - `plant`: the robot's motion under torques that are held between samples;
-//! - `sensors`: encoder quantisation and torque noise;
+//! - `sensors`: encoder delay and quantisation, torque noise;
 //! - [`run`]: the loop, over all runs; [`log`]: the record as CSV;
 //! - [`excitation`]: search of trajectories that excite the parameters well.
 //!
@@ -46,6 +47,7 @@
 
 mod conditioning;
 mod controller;
+pub mod drives;
 pub mod error;
 
 pub mod excitation;
@@ -62,6 +64,7 @@ mod validation;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
+pub use drives::Drives;
 pub use error::{Cause, Error, Problem, RunError, Stage};
 
 pub use excitation::{Found, Search, search};

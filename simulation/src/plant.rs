@@ -67,6 +67,14 @@ impl<'a> Plant<'a> {
         Ok(())
     }
 
+    /// The pose after `time` seconds of the present twist.
+    pub(crate) fn ahead(&self, time: f64) -> Vec<f64> {
+        let mut pose = self.pose.clone();
+        let step: Vec<f64> = self.twist.iter().map(|twist| time * twist).collect();
+        self.model.displace(&mut pose, &step);
+        pose
+    }
+
     fn runge_kutta(&mut self, torques: &[f64], h: f64) -> Result<(), Cause> {
         // Each stage starts from the step's start, moved along the previous stage by its fraction.
         const FRACTION: [f64; 4] = [0.0, 0.5, 0.5, 1.0];

@@ -1,8 +1,8 @@
 //! The closed loop over all runs of an experiment.
 //!
 //! At each sample t_k the encoder is read, the controller computes torques from it at once, and the
-//! robot moves under them until t_{k+1}. The torque that is recorded for t_k is the mean of those held
-//! before and after t_k, so that positions and torques belong to one instant; with either of the two
+//! robot moves under what the drives make of them until t_{k+1}. The torque that is recorded for t_k is
+//! the mean of the currents (in units of torque) before and after t_k, so that positions and torques belong to one instant; with either of the two
 //! alone the record would be half a sample early or late.
 //!
 //! Runs are independent and go to as many threads as the machine has; progress is told on the caller's
@@ -21,6 +21,7 @@ use overact::{Function, Model};
 
 use crate::{
     controller::{Controller, Desired, effective_inertia},
+    drives::Train,
     error::{Cause, Error, RunError, Stage},
     experiment::{Experiment, Run},
     plant::Plant,
@@ -174,17 +175,18 @@ fn simulate_run(
 struct Loop<'a> {
     model: &'a dyn Model,
     controller: Controller<'a>,
+    drives: Train<'a>,
     plant: Plant<'a>,
     sensors: Sensors<'a>,
     record: Record,
-    /// Length of an integration step, s, and their number in a sampling period.
-    step: (f64, usize),
+    /// Length of an integration step, s.
+    step: f64,
     revolute: &'a [bool],
     /// Positions of the actuators at the previous sample, before quantisation.
     last: Vec<f64>,
-    /// Torques of the previous period.
+    /// Currents of the previous period.
     held: Vec<f64>,
-    torques: Vec<f64>,
+    commands: Vec<f64>,
 }
 
 impl<'a> Loop<'a> {
@@ -204,14 +206,15 @@ impl<'a> Loop<'a> {
         Self {
             model,
             controller,
+            drives: Train::new(experiment, info.actuator_is_revolute),
             plant: Plant::new(model, truth, pose, twist),
             sensors: Sensors::new(experiment, sizes.actuators, &run.name),
             record: Record::new(experiment, run, info.actuators),
-            step: (1.0 / (experiment.sampling_hz * steps as f64), steps),
+            step: 1.0 / (experiment.sampling_hz * steps as f64),
             revolute: info.actuator_is_revolute,
             last: reference.positions[..sizes.actuators].to_vec(),
             held: vec![0.0; sizes.actuators],
-            torques: vec![0.0; sizes.actuators],
+            commands: vec![0.0; sizes.actuators],
         }
     }
 
@@ -224,20 +227,40 @@ impl<'a> Loop<'a> {
             .map_err(|e| (Stage::Plant, Cause::Model(e.error)))?;
         follow(measured, &self.last, self.revolute);
         self.last.copy_from_slice(measured);
+        self.drives.deflect(measured);
+        self.sensors.delay(measured);
         self.sensors.encode(measured);
         self.controller
-            .step(self.model, desired, measured, &mut self.torques)
+            .step(self.model, desired, measured, &mut self.commands)
             .map_err(|cause| (Stage::Controller, cause))?;
+        self.drives.take(&self.commands);
         self.record
             .track(k, desired)
             .map_err(|cause| (Stage::Plant, cause))?;
         self.record
-            .torques(k, &self.held, &self.torques, &mut self.sensors);
-        let (h, steps) = self.step;
-        self.plant
-            .advance(&self.torques, h, steps)
-            .map_err(|cause| (Stage::Plant, cause))?;
-        self.held.copy_from_slice(&self.torques);
+            .torques(k, &self.held, &self.drives.currents, &mut self.sensors);
+        self.advance().map_err(|cause| (Stage::Plant, cause))?;
+        self.held.copy_from_slice(&self.drives.currents);
+        Ok(())
+    }
+
+    /// Moves the robot through a sampling period.
+    fn advance(&mut self) -> Result<(), Cause> {
+        let (h, n) = (self.step, self.last.len());
+        let mut torques = std::mem::take(&mut self.drives.torques);
+        for torques in torques.chunks_exact_mut(n) {
+            if self.drives.cogs() {
+                // Teeth go by within a step: those in its middle count.
+                let pose = self.plant.ahead(0.5 * h);
+                let mut positions = self.last.clone();
+                self.model
+                    .evaluate(Function::ActuatorPositions, &[&pose], &mut positions)
+                    .map_err(|e| Cause::Model(e.error))?;
+                self.drives.cog(&positions, torques);
+            }
+            self.plant.advance(torques, h, 1)?;
+        }
+        self.drives.torques = torques;
         Ok(())
     }
 }

@@ -1,9 +1,11 @@
-//! What the controller and the log see of the robot: quantised positions and noisy torques.
+//! What the controller and the log see of the robot: late and quantised positions, noisy torques.
 //!
 //! An encoder of resolution δ shows δ round(q / δ): an error uniform in ±δ/2 with standard deviation
 //! δ/√12. The torque measurement adds white Gaussian noise. Each pair of run and actuator has a random
 //! stream of its own, chosen by the run's name, so a run's noise depends on neither the other runs nor
 //! their order.
+
+use std::collections::VecDeque;
 
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -16,6 +18,9 @@ pub(crate) struct Sensors<'a> {
     resolution: &'a [f64],
     deviation: &'a [f64],
     streams: Vec<Pcg64>,
+    /// Positions that are not seen yet, the oldest first, and how many samples they are late.
+    late: VecDeque<Vec<f64>>,
+    delay: usize,
 }
 
 impl<'a> Sensors<'a> {
@@ -29,6 +34,21 @@ impl<'a> Sensors<'a> {
             resolution: &experiment.encoder_resolution,
             deviation: &experiment.torque_noise,
             streams,
+            late: VecDeque::new(),
+            // The experiment is validated: the product is small and not negative.
+            delay: (experiment.encoder_delay_s * experiment.sampling_hz).round() as usize,
+        }
+    }
+
+    /// Replaces positions by those of some samples before; once per sample. Before the first sample the
+    /// robot was where it started.
+    pub(crate) fn delay(&mut self, positions: &mut [f64]) {
+        while self.late.len() < self.delay {
+            self.late.push_back(positions.to_vec());
+        }
+        if let Some(mut oldest) = self.late.pop_front() {
+            oldest.as_mut_slice().swap_with_slice(positions);
+            self.late.push_back(oldest);
         }
     }
 
@@ -129,6 +149,23 @@ mod tests {
         assert!(errors.iter().all(|e| e.abs() <= 0.5e-3 + 1e-12));
         assert!(mean.abs() < 1e-6);
         assert!((spread / (1e-3 / 12.0_f64.sqrt()) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn positions_are_late_by_whole_samples() {
+        let experiment = Experiment {
+            encoder_delay_s: 4e-4,
+            ..Experiment::default()
+        };
+        let mut sensors = Sensors::new(&experiment, 1, "a");
+        let seen: Vec<f64> = (0..5)
+            .map(|k| {
+                let mut q = [f64::from(k)];
+                sensors.delay(&mut q);
+                q[0]
+            })
+            .collect();
+        assert_eq!(seen, [0.0, 0.0, 0.0, 1.0, 2.0]);
     }
 
     #[test]

@@ -14,6 +14,9 @@ use crate::{
 /// Most samples of one run: a record of that length takes about a gigabyte.
 const SAMPLES: f64 = 1e7;
 
+/// Longest delay of drives and encoders, s: no loop is closed over more.
+const LONGEST_DELAY: f64 = 0.1;
+
 /// Collects problems.
 #[derive(Default)]
 struct Problems(Vec<Problem>);
@@ -100,6 +103,7 @@ pub(crate) fn problems(experiment: &Experiment, info: &Info<'_>) -> Vec<Problem>
         false,
     );
     found.per_actuator("torque_noise", &experiment.torque_noise, info, true, false);
+    drives(&mut found, experiment, info);
     if let Some(limit) = &experiment.torque_limit {
         found.per_actuator("torque_limit", limit, info, false, true);
     }
@@ -126,6 +130,41 @@ pub(crate) fn problems(experiment: &Experiment, info: &Info<'_>) -> Vec<Problem>
         check_run(&mut found, experiment, run, i, info);
     }
     found.0
+}
+
+/// The drives' numbers, and how late they and the encoders may be.
+fn drives(found: &mut Problems, experiment: &Experiment, info: &Info<'_>) {
+    let drives = &experiment.drives;
+    let lists = [
+        ("gain", &drives.gain, true),
+        ("current_bandwidth_hz", &drives.current_bandwidth_hz, false),
+        ("cogging", &drives.cogging, false),
+        ("cogging_periods", &drives.cogging_periods, true),
+        ("flexible_hz", &drives.flexible_hz, false),
+        ("flexible_stiffness", &drives.flexible_stiffness, false),
+    ];
+    for (field, values, positive) in lists {
+        found.per_actuator(&format!("drives.{field}"), values, info, true, positive);
+    }
+    let delays = [
+        ("drives.delay_s", drives.delay_s),
+        ("encoder_delay_s", experiment.encoder_delay_s),
+    ];
+    for (field, delay) in delays {
+        if !(0.0..=LONGEST_DELAY).contains(&delay) {
+            found.add(
+                field,
+                format!("is {delay}; give 0 to {LONGEST_DELAY} seconds"),
+            );
+        }
+    }
+    if !(0.0..1.0).contains(&drives.flexible_damping) {
+        let damping = drives.flexible_damping;
+        found.add(
+            "drives.flexible_damping",
+            format!("is {damping}; give zero or more, below 1"),
+        );
+    }
 }
 
 /// The controller's numbers, and whether they give a stable loop.

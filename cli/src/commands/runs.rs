@@ -11,7 +11,7 @@ use crate::{
 };
 use clap::ValueEnum;
 use overact::{Info, Model};
-use overact_identification::{Log, Mapping, Progress as Stage, Settings, data};
+use overact_identification::{Log, Progress as Stage, Settings, data};
 use overact_simulation::Record;
 use std::{
     collections::BTreeMap,
@@ -81,7 +81,7 @@ impl Arguments {
         if self.are_virtual() {
             self.made(robot, served, as_json)
         } else {
-            self.measured(robot, &served.info())
+            self.measured(robot, &served.info(), as_json)
         }
     }
 
@@ -96,17 +96,33 @@ impl Arguments {
     }
 
     /// Reads logs; the problems of all of them are reported together.
-    fn measured(&self, robot: &Robot, info: &Info<'_>) -> Result<Runs, Failure> {
+    fn measured(&self, robot: &Robot, info: &Info<'_>, as_json: bool) -> Result<Runs, Failure> {
         let mapping = mapping(robot, info)?;
-        let mut failures = Vec::new();
-        let mut read = |paths: &[PathBuf], payload| logs(paths, &mapping, payload, &mut failures);
-        let mut runs = read(&self.data, false);
-        runs.extend(read(&self.payload_data, true));
-        let mut validation = read(&self.cross_validate, false);
-        validation.extend(read(&self.cross_validate_payload, true));
+        let of = |paths: &[PathBuf], payload| -> Vec<(PathBuf, bool)> {
+            paths.iter().map(|path| (path.clone(), payload)).collect()
+        };
+        let own = [of(&self.data, false), of(&self.payload_data, true)].concat();
+        let (plain, loaded) = (&self.cross_validate, &self.cross_validate_payload);
+        let others = [of(plain, false), of(loaded, true)].concat();
+        let files: Vec<(&Path, bool)> = own
+            .iter()
+            .chain(&others)
+            .map(|(path, payload)| (path.as_path(), *payload))
+            .collect();
+        let mut failures: Vec<Failure> = Vec::new();
+        let mut logs = Vec::new();
+        let bar = Progress::new("reading", as_json);
+        let tell = |part: f64| bar.at(part, "");
+        for log in data::read_all(&files, &mapping, &tell) {
+            match log {
+                Ok(log) => logs.push(log),
+                Err(error) => failures.push(error.into()),
+            }
+        }
         if failures.is_empty() {
+            let validation = logs.split_off(own.len());
             Ok(Runs {
-                runs,
+                runs: logs,
                 validation,
                 truth: None,
             })
@@ -174,22 +190,6 @@ fn truth(robot: &Robot, info: &Info<'_>) -> Option<BTreeMap<String, f64>> {
     let mut truth: BTreeMap<String, f64> = all.map(|p| (p.name.to_owned(), 0.0)).collect();
     truth.extend(true_values(table));
     Some(truth)
-}
-
-fn logs(
-    paths: &[PathBuf],
-    mapping: &Mapping,
-    payload: bool,
-    failures: &mut Vec<Failure>,
-) -> Vec<Log> {
-    let mut logs = Vec::new();
-    for path in paths {
-        match data::read(path, mapping, payload) {
-            Ok(log) => logs.push(log),
-            Err(error) => failures.push(error.into()),
-        }
-    }
-    logs
 }
 
 fn name(path: &Path) -> String {

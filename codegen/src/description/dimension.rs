@@ -28,9 +28,11 @@ impl Dimension {
     pub(super) const FIRST_MOMENT: Self = Self([1, 1, 0, 0, 0]);
     pub(super) const LINEAR_VISCOSITY: Self = Self([0, 1, -1, 0, 0]);
     pub(super) const ANGULAR_VISCOSITY: Self = Self([2, 1, -1, 0, -1]);
+    pub(super) const LINEAR_STIFFNESS: Self = Self([0, 1, -2, 0, 0]);
+    pub(super) const ANGULAR_STIFFNESS: Self = Self([2, 1, -2, 0, -1]);
 
     /// What a quantity of this dimension is called, with its article, and its unit.
-    const NAMES: [(Self, &'static str, &'static str); 17] = [
+    const NAMES: [(Self, &'static str, &'static str); 19] = [
         (Self::LENGTH, "a length", "m"),
         (Self::MASS, "a mass", "kg"),
         (Self::TIME, "a time", "s"),
@@ -48,6 +50,8 @@ impl Dimension {
         (Self::FIRST_MOMENT, "a first moment of mass", "kg m"),
         (Self::LINEAR_VISCOSITY, "a viscous friction", "N s/m"),
         (Self::ANGULAR_VISCOSITY, "a viscous friction", "N m s/rad"),
+        (Self::LINEAR_STIFFNESS, "a stiffness", "N/m"),
+        (Self::ANGULAR_STIFFNESS, "a stiffness", "N m/rad"),
     ];
 
     /// Dimension of a product; `None` on overflow of an exponent.

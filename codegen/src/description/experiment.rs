@@ -1,6 +1,7 @@
 //! The table `[experiment]`: a virtual experiment.
 
 use super::dimension::Dimension;
+use super::drives::{self, Drives};
 use super::inventory::Inventory;
 use super::joint;
 use super::model::{JointKind, Spanned};
@@ -28,10 +29,14 @@ pub struct Experiment {
     pub project_internal: bool,
     /// Encoder resolution of each actuator, rad or m; 0 is ideal.
     pub encoder: Vec<f64>,
+    /// Time by which the position sensors are late, s.
+    pub encoder_delay: f64,
     /// Standard deviation of each actuator's torque measurement, N m or N.
     pub torque_noise: Vec<f64>,
     /// Largest absolute torque of each actuator, N m or N.
     pub torque_limit: Option<Vec<f64>>,
+    /// What the drives make of the controller's torques.
+    pub drives: Drives,
     /// Seed of all noise.
     pub seed: u64,
     /// True values of the parameters; those not listed are 0.
@@ -139,8 +144,16 @@ pub(super) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Experim
         feed_forward: switch("feed_forward"),
         project_internal: switch("project_internal"),
         encoder: list("encoder", position).unwrap_or_else(ideal),
+        encoder_delay: table
+            .get("encoder_delay")
+            .and_then(|i| i.not_negative(Dimension::TIME, scope))
+            .unwrap_or(0.0),
         torque_noise: list("torque_noise", effort).unwrap_or_else(ideal),
         torque_limit: list("torque_limit", effort),
+        drives: table
+            .get("drives")
+            .and_then(|item| drives::read(&item, robot))
+            .unwrap_or_default(),
         seed: table.get("seed").and_then(|i| i.integer(0)).unwrap_or(1),
         parameters,
         runs,
@@ -154,12 +167,12 @@ fn position(kind: JointKind) -> Dimension {
     joint::dimension(kind).unwrap_or(Dimension::NONE)
 }
 
-fn effort(kind: JointKind) -> Dimension {
+pub(super) fn effort(kind: JointKind) -> Dimension {
     StandardParameter::Fs.dimension(kind)
 }
 
 /// One value for all actuators, or a list with one for each.
-fn per_actuator(
+pub(super) fn per_actuator(
     item: &Item<'_, '_>,
     kinds: &[JointKind],
     dimension: fn(JointKind) -> Dimension,

@@ -9,6 +9,7 @@
 //! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
 
 mod dimension;
+mod drives;
 mod experiment;
 mod expression;
 mod function;
@@ -31,13 +32,14 @@ mod tests;
 mod token;
 mod value;
 
+pub use drives::Drives;
 pub use experiment::{Body, Experiment, Run, Term, TrueParameter};
 pub use model::{
     BaseColumns, Description, End, Joint, JointKind, Leg, Motion, Placement, Platform,
     PlatformHome, Spanned,
 };
 pub use parameter::StandardParameter;
-pub use settings::{Data, Factor, Friction, Identification, Normalisation};
+pub use settings::{Data, Factor, Friction, Identification, Normalisation, Reversals};
 
 use crate::diagnostic::{Diagnostics, Source};
 

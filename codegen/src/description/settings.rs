@@ -52,6 +52,16 @@ pub enum Friction {
     Asymmetric,
 }
 
+/// What Coulomb friction takes for the sign of a velocity that reverses between two samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reversals {
+    /// The mean of the sign over the sampling interval.
+    #[default]
+    Averaged,
+    /// The sign at the sample.
+    Sampled,
+}
+
 /// Settings of the identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identification {
@@ -68,6 +78,8 @@ pub struct Identification {
     pub skip_end: Option<usize>,
     /// Velocity of a joint (rad/s or m/s) below which its Coulomb friction counts as zero.
     pub velocity_dead_band: f64,
+    /// The sign of velocities around reversals.
+    pub reversals: Reversals,
     /// Ratio of relative standard deviations at which the elimination of parameters ends.
     pub r_sigma: f64,
     /// Kept actuators of case 2, indices among all actuators; if absent, the first r that determine
@@ -163,6 +175,7 @@ pub(super) fn identification(item: Option<&Item<'_, '_>>, robot: &Inventory<'_>)
         skip_start: None,
         skip_end: None,
         velocity_dead_band: 0.0,
+        reversals: Reversals::default(),
         r_sigma: 10.0,
         kept_actuators: None,
         normalisation: Normalisation::default(),
@@ -219,6 +232,13 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     ];
     if let Some(choice) = table.get("friction").and_then(|i| i.choice(&choices)) {
         settings.friction = choice.value;
+    }
+    let choices = [
+        ("averaged", Reversals::Averaged),
+        ("sampled", Reversals::Sampled),
+    ];
+    if let Some(choice) = table.get("reversals").and_then(|i| i.choice(&choices)) {
+        settings.reversals = choice.value;
     }
     settings.weighted = switch("weighted");
     settings.essential = switch("essential");

@@ -194,7 +194,7 @@ impl Columns {
             .map(|(place, _)| place)
             .collect();
         Ok(Self {
-            columns: columns.with_dead_band(model, settings.velocity_dead_band, settings.seed)?,
+            columns: columns.with_reversals(model, settings)?,
             base,
             payload,
         })
@@ -314,7 +314,7 @@ fn run_factors(
                 .evaluate(
                     model,
                     &states,
-                    count,
+                    (count, 1.0 / motion.sampling_frequency),
                     motion.payload,
                     (&base.columns, n * n),
                 )

@@ -61,6 +61,7 @@ fn settings() -> Settings {
         skip_start: 0,
         skip_end: 0,
         velocity_dead_band: 0.0,
+        averaged_reversals: false,
         r_sigma: 10.0,
         keep_significant: false,
         normalisation: Normalisation::Unbiased,

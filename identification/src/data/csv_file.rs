@@ -31,6 +31,16 @@ const BUFFER: usize = 1 << 18;
 /// A file that can't be read, missing columns, cells that are not finite numbers, a time that is
 /// not uniform, or a mapping that is not right.
 pub fn read_csv(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
+    read_telling(path, mapping, payload, &|_| {})
+}
+
+/// The same; `advance` is told every now and then how many bytes more have been read.
+pub(super) fn read_telling(
+    path: &Path,
+    mapping: &Mapping,
+    payload: bool,
+    advance: &dyn Fn(u64),
+) -> Result<Log, Error> {
     let file = display_name(path);
     mapping.check()?;
     let source = Source {
@@ -43,8 +53,13 @@ pub fn read_csv(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Er
     let mut clock = Clock::default();
     let mut samples = Samples::default();
     let mut problems = Vec::new();
-    let mut fits = true;
+    let (mut fits, mut told) = (true, 0);
     loop {
+        let bytes = rows.reader.position().byte();
+        if bytes - told >= BUFFER as u64 {
+            advance(bytes - told);
+            told = bytes;
+        }
         match rows.next(&mut samples) {
             Ok(true) => clock.push(rows.time, Some(rows.line)),
             Ok(false) => break,

@@ -10,12 +10,16 @@ mod log;
 mod mapping;
 mod mat_file;
 
-use std::path::Path;
+use std::{
+    path::Path,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
 pub use csv_file::read_csv;
 pub use log::{Log, Reader, Samples};
 pub use mapping::{Gain, Mapping};
 pub use mat_file::read_mat;
+use rayon::prelude::*;
 
 use crate::error::{Error, Problem, suggestion};
 
@@ -27,14 +31,44 @@ const LARGEST_NUMBER_OF_PROBLEMS: usize = 20;
 /// # Errors
 /// See [`read_csv`] and [`read_mat`].
 pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error> {
+    read_telling(path, mapping, payload, &|_| {})
+}
+
+/// The same; `advance` is told every now and then how many bytes more have been read.
+fn read_telling(
+    path: &Path,
+    mapping: &Mapping,
+    payload: bool,
+    advance: &dyn Fn(u64),
+) -> Result<Log, Error> {
     let is_mat = path
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("mat"));
     if is_mat {
         read_mat(path, mapping, payload)
     } else {
-        read_csv(path, mapping, payload)
+        csv_file::read_telling(path, mapping, payload, advance)
     }
+}
+
+/// Reads several runs at once, each with a word on its payload. `progress` is told the part of all bytes
+/// that has been read, from 0 to 1.
+#[must_use]
+pub fn read_all(
+    files: &[(&Path, bool)],
+    mapping: &Mapping,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Vec<Result<Log, Error>> {
+    // A file that can't be asked for its size can't be read either, which is told then.
+    let size = |path: &Path| std::fs::metadata(path).map_or(0, |file| file.len());
+    let total: u64 = files.iter().map(|(path, _)| size(path)).sum();
+    let done = AtomicU64::new(0);
+    let advance = |bytes: u64| {
+        let now = bytes + done.fetch_add(bytes, Ordering::Relaxed);
+        progress(now as f64 / total.max(1) as f64);
+    };
+    let read = |&(path, payload): &(&Path, bool)| read_telling(path, mapping, payload, &advance);
+    files.par_iter().map(read).collect()
 }
 
 /// The name by which a file is called in messages: as the caller gave it.

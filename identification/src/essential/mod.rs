@@ -24,7 +24,7 @@ use serde::Serialize;
 use crate::{
     correlation::Noise,
     error::Error,
-    estimate::{Estimation, estimate},
+    estimate::{Estimation, condition, fit},
     factor::Factor,
     identify::verdict::Thresholds,
     regression::System,
@@ -88,7 +88,7 @@ pub struct Drift {
 }
 
 /// The essential parameters and the way to them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Essential {
     /// Columns that are left, in the order of the base parameters.
     pub selected: Vec<usize>,
@@ -100,6 +100,8 @@ pub struct Essential {
     pub removals: Vec<Removal>,
     /// Why the elimination ended, in words.
     pub stop: String,
+    /// The correlation of the residual that all base parameters leave.
+    pub(crate) noise: Option<Noise>,
 }
 
 /// Eliminates parameters, starting from the estimation `start` of the columns `selected` with
@@ -137,12 +139,17 @@ pub fn essential(
     }
     let stop = stop(&removals, &here, settings);
     let end = end.unwrap_or(here);
+    let condition_number = condition(system, &end.selected);
     Ok(Essential {
         selected: end.selected,
         names: end.names,
-        estimation: end.estimation,
+        estimation: Estimation {
+            condition_number,
+            ..end.estimation
+        },
         removals,
         stop,
+        noise: walk.noise,
     })
 }
 
@@ -254,7 +261,7 @@ impl<'a> Walk<'a> {
         selected.remove(worst);
         names.remove(worst);
         Ok(Place {
-            estimation: estimate(self.system, &selected, self.settings)?,
+            estimation: fit(self.system, &selected, self.settings)?,
             held_out: self.held_out(&selected),
             selected,
             names,

@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 use overact::Model;
+use rayon::prelude::*;
 
 pub use result::{
     BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping, Run,
@@ -144,8 +145,8 @@ pub fn prepare(
         settings.seed,
     )?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
-    // Relations between columns are those of the model; the dead band is one of the data.
-    let columns = columns.with_dead_band(model, settings.velocity_dead_band, settings.seed)?;
+    // Relations between columns are those of the model; reversals are those of the data.
+    let columns = columns.with_reversals(model, settings)?;
     let observer = Observer {
         model,
         columns: &columns,
@@ -237,10 +238,9 @@ pub fn identify(
     let prepared = prepare(model, experiment.runs, &projections, settings, progress)?;
     let mut warnings = prepared_warnings(&prepared, experiment.validation);
     let mut estimates = Vec::new();
-    for (number, projection) in projections.iter().enumerate() {
-        let model = projection.name();
-        progress(Progress::Estimation { model });
-        match estimate_projection(&prepared, number, settings, experiment.true_values) {
+    let outcomes = estimate_all(&prepared, settings, experiment.true_values, progress);
+    for (number, (outcome, projection)) in outcomes.into_iter().zip(&projections).enumerate() {
+        match outcome {
             Ok(outcome) => {
                 warnings.extend(outcome.warnings);
                 estimates.extend([outcome.base, outcome.essential].map(|one| (number, one)));
@@ -298,6 +298,23 @@ pub fn identify(
             .collect(),
         cross_validation,
     })
+}
+
+/// Estimates all prepared projections, in parallel.
+fn estimate_all(
+    prepared: &Prepared,
+    settings: &Settings,
+    true_values: Option<&BTreeMap<String, f64>>,
+    progress: &dyn Fn(Progress<'_>),
+) -> Vec<Result<Outcome, Error>> {
+    for projection in &prepared.projections {
+        let model = projection.name();
+        progress(Progress::Estimation { model });
+    }
+    (0..prepared.projections.len())
+        .into_par_iter()
+        .map(|number| estimate_projection(prepared, number, settings, true_values))
+        .collect()
 }
 
 /// The projections of a robot: case 1 and case 2, or its joints without redundancy.

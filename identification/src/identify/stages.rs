@@ -50,7 +50,6 @@ pub fn estimate_projection(
     let mut warnings = Vec::new();
     let (selected, names) = on_data(prepared, system, &mut warnings)?;
     let base = estimate(system, &selected, settings)?;
-    let noise = Noise::new(system, &selected, &base);
     let rest = essential(system, &selected, &names, &base, settings)?;
     warnings.extend(quality_warnings(system, &base, &rest.removals));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
@@ -67,7 +66,7 @@ pub fn estimate_projection(
     Ok(Outcome {
         base: context.estimate(
             Stage::Base,
-            (base, noise),
+            (base, rest.noise),
             &selected,
             &names,
             (Vec::new(), None),

@@ -10,9 +10,9 @@ use overact::Model;
 use serde::Serialize;
 
 use super::{
-    Experiment, Prepared, Progress, cross_validate, prepare,
+    Experiment, Prepared, Progress, cross_validate, estimate_all, prepare,
     result::{CrossValidation, Estimate, Stage},
-    stages::{Outcome, estimate_projection},
+    stages::Outcome,
     verdict::Thresholds,
 };
 use crate::{
@@ -83,13 +83,7 @@ pub fn study(
     let mut projections = vec![Projection::Platform];
     projections.extend(choices.iter().cloned().map(Projection::Actuators));
     let prepared = prepare(model, experiment.runs, &projections, settings, progress)?;
-    let mut outcomes: Vec<Result<Outcome, Error>> = Vec::new();
-    for (number, projection) in projections.iter().enumerate() {
-        let model = projection.name();
-        progress(Progress::Estimation { model });
-        let outcome = estimate_projection(&prepared, number, settings, experiment.true_values);
-        outcomes.push(outcome);
-    }
+    let outcomes = estimate_all(&prepared, settings, experiment.true_values, progress);
     let reference = outcomes[0].as_ref().map_err(Clone::clone)?.clone();
     let estimated: Vec<(usize, Estimate)> = outcomes
         .iter()

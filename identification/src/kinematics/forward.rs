@@ -1,12 +1,31 @@
-//! The poses of a run, each found from the one before.
+//! The poses of a run.
+//!
+//! Some samples, the anchors, are solved one after the other, each from the one before, so that the
+//! assembly mode stays that of the home pose. The samples between two anchors start from the straight
+//! way between their poses, where Gauss-Newton needs two or three steps, and all of them step
+//! together: a model evaluates many samples at once much faster than one by one. What does not
+//! converge that way is solved sample by sample, which also tells where a run leaves the workspace.
 
-use overact::{Function, Model, math::wrap_angle};
+use overact::{
+    Function, Model,
+    forward::{STEPS, TOLERANCE, solve_positive_definite},
+    math::wrap_angle,
+};
+use rayon::prelude::*;
 
 use super::outside;
-use crate::{data::Log, error::Error};
+use crate::{checks::couples, data::Log, error::Error};
 
 /// Steps in which the first sample is approached from the home pose, should it be far from it.
 const APPROACH_STEPS: usize = 50;
+
+/// Time (s) and samples from one anchor to the next, at most. The time is one in which a robot moves
+/// little, so that no other assembly mode is near.
+const ANCHOR_SECONDS: f64 = 0.005;
+const ANCHOR_SAMPLES: usize = 32;
+
+/// Samples that step together: enough to fill vector units, few enough for the cache.
+const TOGETHER: usize = 256;
 
 /// Forward kinematics that follows a run.
 pub(super) struct Forward<'a> {
@@ -15,13 +34,22 @@ pub(super) struct Forward<'a> {
     /// The last pose that was found; the home pose at first.
     pose: Vec<f64>,
     started: bool,
+    /// Samples from one anchor to the next; 1 where each is solved by itself.
+    spacing: usize,
 }
 
 impl<'a> Forward<'a> {
     /// Starts at home.
     pub(super) fn new(model: &'a dyn Model, log: &'a Log) -> Self {
+        // Without loops the positions are the pose: nothing is to be solved.
+        let spacing = if couples(model) {
+            (ANCHOR_SECONDS * log.sampling_frequency()) as usize
+        } else {
+            1
+        };
         Self {
             pose: model.info().home_pose.to_vec(),
+            spacing: spacing.clamp(1, ANCHOR_SAMPLES),
             model,
             log,
             started: false,
@@ -38,18 +66,129 @@ impl<'a> Forward<'a> {
             approach(self.model, start, &mut self.pose);
             self.started = true;
         }
-        let mut poses = Vec::with_capacity(positions.len() / n * self.pose.len());
+        let together = if self.spacing > 1 {
+            self.together(positions)
+        } else {
+            None
+        };
+        let poses = match together {
+            Some(poses) => poses,
+            None => self.one_by_one(first, positions)?,
+        };
+        if let Some(last) = poses.rchunks_exact(self.pose.len()).next() {
+            self.pose.copy_from_slice(last);
+        }
+        Ok(poses)
+    }
+
+    /// All poses, each from the one before.
+    fn one_by_one(&self, first: usize, positions: &[f64]) -> Result<Vec<f64>, Error> {
+        let n = self.log.actuators();
+        let mut pose = self.pose.clone();
+        let mut poses = Vec::with_capacity(positions.len() / n * pose.len());
         for (index, actuators) in positions.chunks_exact(n).enumerate() {
             self.model
-                .pose_from_actuators(actuators, &mut self.pose)
+                .pose_from_actuators(actuators, &mut pose)
                 .map_err(|error| {
                     let frequency = self.log.sampling_frequency();
                     outside(self.log.name(), first + index, frequency, error)
                 })?;
-            poses.extend_from_slice(&self.pose);
+            poses.extend_from_slice(&pose);
         }
         Ok(poses)
     }
+
+    /// All poses from anchors, or `None` where that does not converge.
+    fn together(&self, positions: &[f64]) -> Option<Vec<f64>> {
+        let (n, size) = (self.log.actuators(), self.pose.len());
+        let samples = positions.len() / n;
+        // The last sample is an anchor, too.
+        let mut anchors: Vec<usize> = (self.spacing - 1..samples).step_by(self.spacing).collect();
+        if anchors.last() != Some(&(samples - 1)) {
+            anchors.push(samples - 1);
+        }
+        let mut found = vec![self.pose.clone()];
+        for &anchor in &anchors {
+            let mut pose = found.last()?.clone();
+            let actuators = &positions[anchor * n..(anchor + 1) * n];
+            self.model.pose_from_actuators(actuators, &mut pose).ok()?;
+            found.push(pose);
+        }
+        // Poses with a quaternion have no straight way: all start from the anchor before.
+        let is_straight = size == self.model.info().sizes.dof;
+        let mut poses = Vec::with_capacity(samples * size);
+        for (ends, &anchor) in found.windows(2).zip(&anchors) {
+            let before = poses.len() / size;
+            let count = anchor + 1 - before;
+            for step in 1..=count {
+                let part = step as f64 / count as f64;
+                let way = ends[0].iter().zip(&ends[1]);
+                if step == count {
+                    poses.extend_from_slice(&ends[1]);
+                } else if is_straight {
+                    poses.extend(way.map(|(from, to)| from + part * (to - from)));
+                } else {
+                    poses.extend_from_slice(&ends[0]);
+                }
+            }
+        }
+        poses
+            .par_chunks_mut(TOGETHER * size)
+            .zip(positions.par_chunks(TOGETHER * n))
+            .try_for_each(|(poses, positions)| settle(self.model, positions, poses))?;
+        Some(poses)
+    }
+}
+
+/// Moves poses until none moves any more: Gauss-Newton for all samples at once, with the tolerance of
+/// [`overact::forward::gauss_newton`]. `None` where a sample does not converge.
+fn settle(model: &dyn Model, positions: &[f64], poses: &mut [f64]) -> Option<()> {
+    let info = model.info();
+    let (n, r, size) = (info.sizes.actuators, info.sizes.dof, info.sizes.pose);
+    let samples = positions.len() / n;
+    let mut reached = vec![0.0; samples * n];
+    let mut jacobians = vec![0.0; samples * n * r];
+    let (mut normal, mut step) = (vec![0.0; r * r], vec![0.0; r]);
+    for _ in 0..STEPS {
+        model
+            .evaluate(Function::ActuatorPositions, &[poses], &mut reached)
+            .ok()?;
+        model
+            .evaluate(Function::InverseJacobian, &[poses], &mut jacobians)
+            .ok()?;
+        let mut largest = 0.0_f64;
+        let rows = positions.chunks_exact(n).zip(reached.chunks_exact(n));
+        let samples = rows.zip(jacobians.chunks_exact(n * r));
+        for (pose, ((measured, reached), jacobian)) in poses.chunks_exact_mut(size).zip(samples) {
+            normal.fill(0.0);
+            step.fill(0.0);
+            for (i, row) in jacobian.chunks_exact(r).enumerate() {
+                let mut difference = measured[i] - reached[i];
+                if info.actuator_is_revolute[i] {
+                    difference = wrap_angle(difference);
+                }
+                for (a, normal) in row.iter().zip(normal.chunks_exact_mut(r)) {
+                    normal
+                        .iter_mut()
+                        .zip(row)
+                        .for_each(|(sum, b)| *sum += a * b);
+                }
+                step.iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, a)| *sum += a * difference);
+            }
+            solve_positive_definite(&mut normal, &mut step).ok()?;
+            model.displace(pose, &step);
+            largest = step.iter().fold(largest, |m, s| m.max(s.abs()));
+            if !step.iter().all(|s| s.is_finite()) {
+                return None;
+            }
+        }
+        if largest < TOLERANCE {
+            return Some(());
+        }
+    }
+    None
 }
 
 /// Walks from the home pose towards the first sample in small steps, so that its assembly mode is

@@ -46,15 +46,17 @@ positions = ["q"]
 torques = ["f"]
 [experiment]
 zzzz11 = 1
-[[experiment.run]]
+[experiment.drives]
 zzzz12 = 1
+[[experiment.run]]
+zzzz13 = 1
 name = "run"
 fundamental = 1
-terms = [{ zzzz13 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
+terms = [{ zzzz14 = 1, coordinate = "x", harmonic = 1, amplitude = 1 }]
 "#;
 
 /// Headings, in the order of the unknown keys, and what stands before the keys there.
-const SECTIONS: [(&str, &str); 14] = [
+const SECTIONS: [(&str, &str); 15] = [
     ("## The robot", ""),
     ("### `[platform]`", ""),
     ("### `[platform]`", "axis."),
@@ -67,6 +69,7 @@ const SECTIONS: [(&str, &str); 14] = [
     ("## `[identification]`", ""),
     ("## `[data]`: a measured log", ""),
     ("## `[experiment]`: a virtual experiment", ""),
+    ("### `[experiment.drives]`", ""),
     ("### `[[experiment.run]]`", ""),
     ("### A term", ""),
 ];

@@ -16,6 +16,12 @@ duration = 0
 bandwith = 3
 encoder = [1, 2]
 torque_limit = "127 N"
+encoder_delay = "-1 ms"
+[experiment.drives]
+gain = [1, 2]
+cogging = "0.3 N"
+flexible_stiffness = "10 N/m"
+back_emf = 1
 [experiment.parameters]
 zz_1 = "1 kg m"
 zz_2 = 1
@@ -41,15 +47,20 @@ terms = []
         "5:1 unknown key `bandwith`; did you mean `bandwidth`?",
         "6:11 `encoder`: expected one value or 1, one for each actuator, found 2",
         "7:16 `torque_limit`: expected a torque (N m), found a force (127 N)",
-        "9:8 `zz_1`: expected a moment of inertia (kg m^2), found a first moment of mass (1 kg m)",
-        "10:1 the robot has no parameter `zz_2`; did you mean `zz_1`?",
-        "12:8 `fs_1`: expected a torque (N m), found a quantity in m^2 kg s^-1 (0.1 m^2 kg s^-1)",
-        "13:1 a run has no `name`; for instance name = \"unloaded 1\"",
-        "14:11 the robot has no payload; describe it in a table [platform.payload]",
-        "17:18 the robot has no coordinate `2`; its coordinates are 1",
-        "17:34 `harmonic`: expected an integer of at least 1, found 0",
-        "18:49 `amplitude`: expected an angle (rad), found a length (1 m)",
-        "20:1 a run has no `fundamental`; fundamental = \"0.1 Hz\", the frequency of the first harmonic",
+        "8:17 `encoder_delay`: expected a value at least 0, found -0.001 s",
+        "10:8 `gain`: expected one value or 1, one for each actuator, found 2",
+        "11:11 `cogging`: expected a torque (N m), found a force (0.3 N)",
+        "12:22 `flexible_stiffness`: expected a stiffness (N m/rad), found a stiffness (10 N/m)",
+        "13:1 unknown key `back_emf`; known keys: gain, delay, current_bandwidth, cogging, cogging_periods, flexible_frequency, flexible_damping, flexible_stiffness",
+        "15:8 `zz_1`: expected a moment of inertia (kg m^2), found a first moment of mass (1 kg m)",
+        "16:1 the robot has no parameter `zz_2`; did you mean `zz_1`?",
+        "18:8 `fs_1`: expected a torque (N m), found a quantity in m^2 kg s^-1 (0.1 m^2 kg s^-1)",
+        "19:1 a run has no `name`; for instance name = \"unloaded 1\"",
+        "20:11 the robot has no payload; describe it in a table [platform.payload]",
+        "23:18 the robot has no coordinate `2`; its coordinates are 1",
+        "23:34 `harmonic`: expected an integer of at least 1, found 0",
+        "24:49 `amplitude`: expected an angle (rad), found a length (1 m)",
+        "26:1 a run has no `fundamental`; fundamental = \"0.1 Hz\", the frequency of the first harmonic",
     ];
     let found = errors(tables);
     for line in expected {

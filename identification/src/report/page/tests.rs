@@ -196,6 +196,7 @@ fn settings() -> Settings {
         decimation: 50,
         skip_start: 0,
         velocity_dead_band: 0.0,
+        averaged_reversals: false,
         skip_end: 0,
         r_sigma: 10.0,
         keep_significant: true,

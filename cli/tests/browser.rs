@@ -1,0 +1,207 @@
+//! The report in a browser: every figure is there, with something in it, at desktop and phone width, in
+//! light and dark, nothing runs over the edge, and texts stand out from what is behind them.
+//!
+//! The browser is `OVERACT_CHROMIUM`, or a Chromium or Chrome of the PATH; without one the test is skipped
+//! with a message. The report stands in a frame of the wanted width, because a window can't be as narrow
+//! as a phone.
+
+mod common;
+
+use common::{Bench, list, number, robot};
+use serde_json::Value;
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// The figures that the report of a redundant, virtual robot has, each with words of its plots or of its
+/// description.
+const FIGURES: [(&str, &[&str]); 13] = [
+    ("figure-robot", &[]),
+    ("figure-parameters", &["estimate"]),
+    ("figure-elimination-platform", &["relative error"]),
+    ("figure-elimination-actuators", &["relative error"]),
+    ("figure-conditioning", &["condition"]),
+    ("figure-inputs-platform-1", &["measured", "predicted"]),
+    ("figure-inputs-actuators-1", &["measured", "predicted"]),
+    ("figure-torques-1", &["measured", "predicted"]),
+    ("figure-torques-2", &["measured", "predicted"]),
+    ("figure-trajectories", &["phi"]),
+    ("figure-residuals-platform", &["autocorrelation", "spectr"]),
+    ("figure-residuals-actuators", &["autocorrelation", "spectr"]),
+    ("tracking", &["computed torque"]),
+];
+
+/// Asks the laid-out page, and tells the window around it.
+const PROBE: &str = r#"<script>
+addEventListener('load', () => {
+  const rgb = text => { const m = text.match(/[\d.]+/g).map(Number); return m.length < 4 || m[3] > 0 ? m : null; };
+  const light = c => { const l = c.slice(0, 3).map(v => { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2]; };
+  const behind = e => { for (; e; e = e.parentElement) { const c = rgb(getComputedStyle(e).backgroundColor); if (c) return c; } return [255, 255, 255]; };
+  const contrast = (e, colour) => { const a = light(rgb(colour)), b = light(behind(e)); return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05); };
+  const texts = [...document.querySelectorAll('h1,h2,h3,p,li,td,th,dt,dd,figcaption,caption,summary,a')].filter(e => e.getClientRects().length && e.textContent.trim());
+  const marks = [...document.querySelectorAll('.plot text')];
+  const lines = [...document.querySelectorAll('.plot .line path')];
+  const least = (all, colour) => all.reduce((found, e) => { const c = contrast(e, getComputedStyle(e)[colour]); return c < found[0] ? [c, e.textContent.trim().slice(0, 60)] : found; }, [99, '']);
+  const figures = {};
+  for (const e of document.querySelectorAll('figure[id], section[id]')) {
+    const box = e.getBoundingClientRect();
+    const plots = [...e.querySelectorAll('svg.plot, img')].map(p => { const b = p.getBoundingClientRect();
+      return { width: b.width, height: b.height, left: b.left, right: b.right,
+        drawn: p.tagName == 'IMG' ? p.naturalWidth : [...p.querySelectorAll('.line path, .line circle, .bar path')].length }; });
+    figures[e.id] = { width: box.width, height: box.height, right: box.right, plots, text: e.textContent.toLowerCase() };
+  }
+  const wide = [...document.querySelectorAll('body *')].filter(e => !e.closest('.scroll') && !e.closest('svg') && e.getBoundingClientRect().right > innerWidth + 1).map(e => e.tagName + '.' + e.className + ' ' + e.textContent.trim().slice(0, 40));
+  parent.postMessage({ width: innerWidth, dark: matchMedia('(prefers-color-scheme: dark)').matches,
+    overflow: document.documentElement.scrollWidth - innerWidth, wide: wide.slice(0, 5), figures,
+    text: least(texts, 'color'), marks: least(marks, 'fill'), lines: least(lines, 'stroke') }, '*');
+});
+</script></body>"#;
+
+/// A browser, or `None` with a message.
+fn browser() -> Option<PathBuf> {
+    if let Some(path) = env::var_os("OVERACT_CHROMIUM") {
+        return Some(path.into());
+    }
+    let folders = env::var_os("PATH").unwrap_or_default();
+    let names = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+    let found = env::split_paths(&folders)
+        .flat_map(|folder| names.map(|name| folder.join(name)))
+        .find(|path| path.is_file());
+    if found.is_none() {
+        println!(
+            "skipped: no browser; set OVERACT_CHROMIUM to a Chromium to test the report in it"
+        );
+    }
+    found
+}
+
+/// The browser's view of a page of the bench, at a width and in a colour scheme: what the probe tells.
+/// With `OVERACT_SCREENSHOTS`, the view is kept in that folder.
+fn view(browser: &Path, bench: &Bench, width: u32, dark: bool) -> Value {
+    let report = bench.read("report.html").replace("</body>", PROBE);
+    bench.write("probed.html", &report);
+    let frame = format!(
+        "<!DOCTYPE html><html><body style=\"margin:0\"><pre id=\"told\" hidden></pre>\
+         <iframe src=\"probed.html\" style=\"border:0;width:{width}px;height:9000px\"></iframe>\
+         <script>addEventListener('message', e => document.getElementById('told').textContent = JSON.stringify(e.data));</script>\
+         </body></html>"
+    );
+    bench.write("frame.html", &frame);
+    let scheme = if dark { "dark" } else { "light" };
+    let run = |task: &[String]| {
+        Command::new(browser)
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-quic",
+                "--no-first-run",
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-sync",
+                "--hide-scrollbars",
+                "--allow-file-access-from-files",
+                "--virtual-time-budget=20000",
+            ])
+            .arg(format!(
+                "--user-data-dir={}",
+                bench.path("profile").display()
+            ))
+            // 0 is dark and 1 is light.
+            .arg(format!(
+                "--blink-settings=preferredColorScheme={}",
+                u8::from(!dark)
+            ))
+            .arg(format!("--window-size={},9000", width.max(600)))
+            .args(task)
+            .arg(format!("file://{}", bench.path("frame.html").display()))
+            .output()
+            .expect("the browser")
+    };
+    if let Some(folder) = env::var_os("OVERACT_SCREENSHOTS") {
+        let file = Path::new(&folder).join(format!("{width}-{scheme}.png"));
+        run(&[format!("--screenshot={}", file.display())]);
+    }
+    let output = run(&["--dump-dom".to_owned()]);
+    let dom = String::from_utf8_lossy(&output.stdout).into_owned();
+    let told = dom.split_once("hidden=\"\">").map(|(_, rest)| rest);
+    let told = told.and_then(|rest| rest.split_once("</pre>"));
+    let (told, _) = told.unwrap_or_else(|| {
+        panic!(
+            "no page from {}: {}",
+            browser.display(),
+            String::from_utf8_lossy(&output.stderr)
+        )
+    });
+    let text = told
+        .replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&nbsp;", "\u{a0}")
+        .replace("&amp;", "&");
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error} in `{text}`"))
+}
+
+#[test]
+fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let bench = Bench::new();
+    let text = fs::read_to_string(robot("dualv.toml")).expect("the description");
+    bench.write(
+        "my.toml",
+        &text.replace("duration = \"10 s\"", "duration = \"1.5 s\""),
+    );
+    let published = robot("published/dualv.toml");
+    bench.good(&[
+        "identify",
+        "my.toml",
+        "--published",
+        &published,
+        "--report",
+        "report.html",
+    ]);
+    for (width, dark) in [(1280, false), (1280, true), (390, false), (390, true)] {
+        let seen = view(&browser, &bench, width, dark);
+        let place = format!("{width} px, {}", if dark { "dark" } else { "light" });
+        assert_eq!(seen["width"], width, "{place}");
+        assert_eq!(seen["dark"], dark, "{place}");
+        let overflow = number(&seen["overflow"]);
+        assert!(overflow <= 0.0, "{place}: {overflow} px: {}", seen["wide"]);
+        assert_eq!(list(&seen["wide"]), [Value::Null; 0], "{place}");
+        for (what, least) in [("text", 4.5), ("marks", 4.5), ("lines", 3.0)] {
+            let found = list(&seen[what]);
+            assert!(number(&found[0]) >= least, "{place}: {what}: {found:?}");
+        }
+        for (id, words) in FIGURES {
+            let figure = &seen["figures"][id];
+            assert!(figure.is_object(), "{place}: {id} is missing");
+            assert_figure(&format!("{place}: {id}"), figure, words, f64::from(width));
+        }
+    }
+}
+
+/// A figure has a size, plots within the page, something drawn in each, and its words.
+fn assert_figure(place: &str, figure: &Value, words: &[&str], width: f64) {
+    assert!(number(&figure["width"]) > 200.0, "{place}");
+    assert!(number(&figure["height"]) > 60.0, "{place}");
+    assert!(number(&figure["right"]) <= width + 1.0, "{place}");
+    for plot in list(&figure["plots"]) {
+        assert!(number(&plot["width"]) > 150.0, "{place}: {plot}");
+        assert!(number(&plot["height"]) > 80.0, "{place}: {plot}");
+        assert!(number(&plot["left"]) >= 0.0, "{place}: {plot}");
+        assert!(number(&plot["right"]) <= width + 1.0, "{place}: {plot}");
+        assert!(number(&plot["drawn"]) >= 1.0, "{place}: {plot}");
+    }
+    let text = figure["text"].as_str().expect("a text");
+    for word in words {
+        assert!(text.contains(word), "{place}: `{word}` is not in {text}");
+    }
+    let is_figure = !place.ends_with("tracking");
+    assert!(
+        !is_figure || !list(&figure["plots"]).is_empty(),
+        "{place}: nothing is drawn"
+    );
+}

@@ -1,0 +1,171 @@
+//! The paper's robot from the command line: logs of the virtual experiment, the nine parameters of
+//! Table 2 from them in both cases, Tables 2 to 4 beside the published ones; and what is said where a
+//! trajectory crosses a singularity of the kept actuators.
+
+mod common;
+
+use common::{Bench, list, number, robot};
+use serde_json::Value;
+use std::fs;
+
+/// The description with shorter runs, changed by `edit`.
+fn described(edit: impl Fn(String) -> String) -> Bench {
+    let text = fs::read_to_string(robot("dualv.toml")).expect("the description");
+    let text = text.replace("duration = \"10 s\"", "duration = \"5 s\"");
+    let bench = Bench::new();
+    bench.write("my.toml", &edit(text));
+    bench
+}
+
+/// Names and true values of Table 2, case 1; those of the experiment.
+const NINE: [(&str, f64); 9] = [
+    ("zz_platformR", 0.0206),
+    ("m_platformR", 1.92),
+    ("zz_1_leg1R", 0.0445),
+    ("zz_1_leg2R", 0.0481),
+    ("zz_1_leg3R", 0.0481),
+    ("zz_1_leg4R", 0.0507),
+    ("zz_payload", 0.0161),
+    ("mx_payload", -0.127),
+    ("m_payload", 5.42),
+];
+
+/// The essential estimates of both cases.
+fn essential(document: &Value) -> Vec<&Value> {
+    let estimates = list(&document["estimates"]).iter();
+    estimates
+        .filter(|estimate| estimate["stage"] == "essential")
+        .collect()
+}
+
+#[test]
+fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
+    let bench = described(|text| text);
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let published = robot("published/dualv.toml");
+    let arguments = [
+        "identify",
+        "my.toml",
+        "--data",
+        "log_unloaded_1.csv",
+        "log_unloaded_2.csv",
+        "--payload-data",
+        "log_loaded_1.csv",
+        "log_loaded_2.csv",
+        "--cross-validate",
+        "log_trajectory_1.csv",
+        "--cross-validate-payload",
+        "log_trajectory_2.csv",
+        "--tracking",
+        "--published",
+        published.as_str(),
+        "--report",
+        "report.json",
+    ];
+    let text = bench.good(&arguments);
+    let document: Value = serde_json::from_str(&bench.read("report.json")).expect("JSON");
+    let cases = essential(&document);
+    assert_eq!(cases.len(), 2);
+    for case in cases {
+        let model = case["model"].as_str().expect("a name");
+        let parameters = list(&case["parameters"]);
+        let names: Vec<&str> = parameters
+            .iter()
+            .filter_map(|parameter| parameter["name"].as_str())
+            .collect();
+        assert_eq!(names, NINE.map(|(name, _)| name), "{model}");
+        for (parameter, (name, truth)) in parameters.iter().zip(NINE) {
+            let error = 100.0 * (number(&parameter["value"]) / truth - 1.0).abs();
+            assert!(error < 2.0, "{model} {name}: {error} %");
+        }
+        if model == "actuators" {
+            let worst = number(&case["partition"]["largest"]);
+            assert!(worst < 30.0, "{worst}");
+        }
+    }
+    for verdict in list(&document["verdicts"]) {
+        assert_eq!(verdict["trusted"], true, "{verdict}");
+    }
+    assert_tables(&text);
+}
+
+/// Tables 2 to 4, each with a number of the paper in its line.
+fn assert_tables(text: &str) {
+    let titles = [
+        "Parameters, beside",
+        "Torque errors in percent of the torques, beside",
+        "Largest tracking errors in 1e-3 m or rad, beside",
+    ];
+    for title in titles {
+        assert!(text.contains(title), "{title} is not in\n{text}");
+    }
+    let line = |start: &str, number: &str| {
+        let mut lines = text.lines();
+        let found = lines.any(|line| line.starts_with(start) && line.contains(number));
+        assert!(found, "{start} {number} in\n{text}");
+    };
+    line("m_payload", "5.42");
+    line("zz_1_leg4R", "0.0507");
+    for controller in ["computed torque, case 1", "computed torque, case 2"] {
+        assert!(text.contains(controller), "{controller}");
+    }
+}
+
+/// Runs through (-0.10, 0.16) m, -6.06 degrees, where rows 1 to 3 of J_p^inv are dependent though the
+/// robot is regular there.
+fn crossing(text: String) -> String {
+    let (before, _) = text.split_once("[[experiment.run]]").expect("runs");
+    let run = |name: &str, payload: bool, turn: f64| {
+        format!(
+            r#"[[experiment.run]]
+name = "{name}"
+payload = {payload}
+fundamental = "1.0 Hz"
+terms = [
+    {{ coordinate = "x", harmonic = 1, amplitude = "105 mm", phase = "{} deg" }},
+    {{ coordinate = "x", harmonic = 3, amplitude = "12 mm", phase = "{} deg" }},
+    {{ coordinate = "y", harmonic = 1, amplitude = "165 mm", phase = "{turn} deg" }},
+    {{ coordinate = "y", harmonic = 4, amplitude = "8 mm", phase = "{turn} deg" }},
+    {{ coordinate = "phi", harmonic = 2, amplitude = "9 deg", phase = "{} deg" }},
+    {{ coordinate = "phi", harmonic = 5, amplitude = "7 deg", phase = "{turn} deg" }},
+]
+"#,
+            180.0 + turn,
+            40.0 - turn,
+            2.0 * turn - 30.0
+        )
+    };
+    let runs = [
+        ("one", false, 10.0),
+        ("two", false, 75.0),
+        ("three", true, -20.0),
+        ("four", true, 130.0),
+    ];
+    let runs = runs.map(|(name, payload, turn)| run(name, payload, turn));
+    format!("{before}{}", runs.concat())
+}
+
+#[test]
+fn a_crossed_singularity_of_the_kept_actuators_is_told() {
+    let bench = described(crossing);
+    let document = bench.json(&["identify", "my.toml"]);
+    let verdict = |subject: &str| {
+        let mut verdicts = list(&document["verdicts"]).iter();
+        let found = verdicts.find(|verdict| verdict["subject"] == subject);
+        found.unwrap_or_else(|| panic!("no verdict on {subject}"))
+    };
+    assert_eq!(verdict("case 2")["trusted"], false);
+    let reasons = verdict("case 2")["reasons"].to_string();
+    assert!(
+        reasons.contains("crosses a singularity of the kept actuators"),
+        "{reasons}"
+    );
+    // Its error is the smaller one all the same, and the report says what to make of that.
+    let estimates = list(&document["estimates"]).iter();
+    let base: Vec<f64> = estimates
+        .filter(|estimate| estimate["stage"] == "base")
+        .map(|estimate| number(&estimate["relative_error_percent"]))
+        .collect();
+    assert!(base[1] < base[0], "{base:?}");
+    assert!(reasons.contains("does not speak for it"), "{reasons}");
+}
