@@ -1,16 +1,32 @@
 //! Programs evaluated over blocks of samples.
 //!
-//! Every step of a [`Program`] is one loop over the samples of a block, whose values lie side by side
-//! (structure of arrays), so that the loops vectorise and the overhead of interpretation is shared by
-//! the whole block. Numbers enter and leave sample by sample, row-major.
+//! A [`Program`] becomes a plan: a list of passes over a block, each of which computes one to three steps
+//! for all its samples at once, with the widest vectors that the processor has. The values of a number
+//! lie side by side (structure of arrays), and the overhead of interpretation is shared by the whole
+//! block. Numbers enter sample by sample, row-major; they are handed out block by block as they lie
+//! ([`Program::evaluate_blocks`]), or row-major too ([`Program::evaluate`]), which takes about as long
+//! again: a model has hundreds of numbers, and each has to be moved.
 
+mod fuse;
+mod inputs;
+mod lanes;
+mod plan;
+mod rows;
 mod single;
+#[cfg(test)]
+mod tests;
+mod trigonometry;
+mod turn;
 
-use crate::lowering::{Condition, Operation, Program, SINGULAR, Source};
-use wide::f64x4;
+use crate::lowering::{Condition, Program, SINGULAR};
+use plan::{Output, Plan};
+use std::cell::Cell;
 
-/// Samples per block: the values of a few hundred steps stay in the second-level cache.
+/// Samples per block: what a program has alive stays in the nearest caches.
 pub const BLOCK: usize = 64;
+
+/// Numbers in a line of the cache.
+const LINE: usize = 8;
 
 /// A program whose condition failed at a sample.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +39,13 @@ pub struct Failed {
     pub value: f64,
 }
 
-/// Memory of an evaluation, to be used again.
+/// Memory of an evaluation, to be used again. It remembers the plan of its last program.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    steps: Vec<[f64; BLOCK]>,
-    inputs: Vec<[f64; BLOCK]>,
+    plan: Plan,
+    /// The slots of the plan, a block each, behind what aligns them.
+    memory: Vec<f64>,
+    start: usize,
     single: Vec<f64>,
 }
 
@@ -38,6 +56,38 @@ pub struct Rows<'a> {
     pub values: &'a [f64],
     /// Whether one row serves all samples.
     pub shared: bool,
+}
+
+/// The numbers of an output over a block of samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Block<'a> {
+    outputs: &'a [Output],
+    slots: &'a [[f64; BLOCK]],
+    first: usize,
+    samples: usize,
+}
+
+impl<'a> Block<'a> {
+    /// The first sample.
+    #[must_use]
+    pub const fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Number of samples, at most [`BLOCK`].
+    #[must_use]
+    pub const fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The values at all samples of number `index` of the output, and the sign to give them: ±1. Numbers
+    /// that are equal but for the sign share their values.
+    #[must_use]
+    pub fn column(&self, index: usize) -> Option<(f64, &'a [f64])> {
+        let output = self.outputs.get(index)?;
+        let values = self.slots[output.slot].get(..self.samples)?;
+        Some((if output.negative { -1.0 } else { 1.0 }, values))
+    }
 }
 
 impl Program {
@@ -58,86 +108,82 @@ impl Program {
             return single::evaluate(self, inputs, output, &mut workspace.single);
         }
         let width = self.entries.len();
-        workspace.steps.resize(self.steps.len(), [0.0; BLOCK]);
-        workspace
-            .inputs
-            .resize(self.inputs.iter().map(|a| a.len()).sum(), [0.0; BLOCK]);
-        let offsets = self.input_offsets();
-        for start in (0..samples).step_by(BLOCK) {
-            let count = BLOCK.min(samples - start);
-            self.load(start, count, inputs, &mut workspace.inputs);
-            for at in 0..self.steps.len() {
-                let (done, rest) = workspace.steps.split_at_mut(at);
-                let fetch = Fetch {
-                    done,
-                    inputs: &workspace.inputs,
-                    offsets: &offsets,
-                };
-                run_step(self.steps[at].operation, &fetch, &mut rest[0]);
-            }
-            let fetch = Fetch {
-                done: &workspace.steps,
-                inputs: &workspace.inputs,
-                offsets: &offsets,
+        self.evaluate_blocks(samples, inputs, workspace, |block| {
+            let range = block.first * width..(block.first + block.samples) * width;
+            rows::write(&block, output.get_mut(range).unwrap_or_default());
+        })
+    }
+
+    /// Evaluates the program at `samples` samples, and hands out the numbers of its output block by block.
+    ///
+    /// # Errors
+    /// The first sample at which a guard fails; its block is not handed out. Inputs of a wrong length are
+    /// the caller's error and count as zeros.
+    pub fn evaluate_blocks(
+        &self,
+        samples: usize,
+        inputs: &[Rows<'_>],
+        workspace: &mut Workspace,
+        mut take: impl FnMut(Block<'_>),
+    ) -> Result<(), Failed> {
+        workspace.prepare(self);
+        for first in (0..samples).step_by(BLOCK) {
+            let count = BLOCK.min(samples - first);
+            let memory = &mut workspace.memory[workspace.start..];
+            let slots = Cell::from_mut(memory).as_slice_of_cells().as_chunks().0;
+            inputs::load(self, &workspace.plan, first, count, inputs, slots);
+            lanes::run(&workspace.plan, slots);
+            let block = Block {
+                outputs: &workspace.plan.outputs,
+                slots: workspace.memory[workspace.start..].as_chunks().0,
+                first,
+                samples: count,
             };
-            self.check(&fetch, start, count)?;
-            for (column, entry) in self.entries.iter().enumerate() {
-                let sign = if entry.negative { -1.0 } else { 1.0 };
-                for lane in 0..count {
-                    if let Some(slot) = output.get_mut((start + lane) * width + column) {
-                        *slot = sign * fetch.lane(entry.source, lane);
-                    }
-                }
-            }
+            self.check(&workspace.plan.guards, &block)?;
+            take(block);
         }
         Ok(())
     }
 
-    fn input_offsets(&self) -> Vec<usize> {
-        let mut offset = 0;
-        let mut next = |len: usize| {
-            offset += len;
-            offset - len
-        };
-        self.inputs.iter().map(|a| next(a.len())).collect()
-    }
-
-    fn load(&self, start: usize, count: usize, inputs: &[Rows<'_>], block: &mut [[f64; BLOCK]]) {
-        let mut at = 0;
-        for (array, rows) in self.inputs.iter().zip(inputs) {
-            let len = array.len();
-            for index in 0..len {
-                for (lane, slot) in block[at + index].iter_mut().enumerate() {
-                    // Lanes beyond the last sample repeat it, so that they stay harmless.
-                    let row = if rows.shared {
-                        0
-                    } else {
-                        start + lane.min(count - 1)
-                    };
-                    *slot = rows.values.get(row * len + index).copied().unwrap_or(0.0);
-                }
-            }
-            at += len;
-        }
-    }
-
-    fn check(&self, fetch: &Fetch<'_>, start: usize, count: usize) -> Result<(), Failed> {
+    fn check(&self, guards: &[plan::Slot], block: &Block<'_>) -> Result<(), Failed> {
         let mut first: Option<Failed> = None;
-        for (index, guard) in self.guards.iter().enumerate() {
-            for lane in 0..count {
-                let value = fetch.lane(guard.source, lane);
-                let sample = start + lane;
-                let earlier = first.as_ref().is_none_or(|f| sample < f.sample);
-                if !guard.condition.holds(value) && earlier {
-                    first = Some(Failed {
-                        sample,
-                        guard: index,
-                        value,
-                    });
-                }
+        for (index, (guard, slot)) in self.guards.iter().zip(guards).enumerate() {
+            let values = &block.slots[*slot][..block.samples];
+            if guard.condition.holds_for_all(values) {
+                continue;
+            }
+            let failed = values.iter().position(|v| !guard.condition.holds(*v));
+            let earlier = |lane: &usize| {
+                let sample = block.first + lane;
+                first.as_ref().is_none_or(|f| sample < f.sample)
+            };
+            if let Some(lane) = failed.filter(earlier) {
+                first = Some(Failed {
+                    sample: block.first + lane,
+                    guard: index,
+                    value: values[lane],
+                });
             }
         }
         first.map_or(Ok(()), Err)
+    }
+}
+
+impl Workspace {
+    /// Makes the memory fit a program.
+    fn prepare(&mut self, program: &Program) {
+        if self.plan.is_of(program) {
+            return;
+        }
+        self.plan = Plan::new(program);
+        self.memory = vec![0.0; self.plan.slots * BLOCK + LINE];
+        // Vectors that lie across two lines of the cache take twice the time.
+        self.start = self.memory.as_ptr().align_offset(LINE * size_of::<f64>());
+        self.start = self.start.min(LINE);
+        let slots = self.memory[self.start..].as_chunks_mut::<BLOCK>().0;
+        for &(slot, value) in &self.plan.constants {
+            slots[slot].fill(value);
+        }
     }
 }
 
@@ -145,117 +191,31 @@ impl Condition {
     /// Whether the condition holds for a value; never for NaN.
     #[must_use]
     pub fn holds(&self, value: f64) -> bool {
+        self.holds_for_all(&[value])
+    }
+
+    /// Whether the condition holds for all values.
+    #[must_use]
+    pub fn holds_for_all(&self, values: &[f64]) -> bool {
+        // Without an early end, so that several values are compared at a time.
         match self {
-            Self::Reach { .. } => value >= 0.0,
-            Self::Leg { home, .. } | Self::Platform { home, .. } => value.abs() > SINGULAR * home,
-        }
-    }
-}
-
-struct Fetch<'a> {
-    done: &'a [[f64; BLOCK]],
-    inputs: &'a [[f64; BLOCK]],
-    offsets: &'a [usize],
-}
-
-impl Fetch<'_> {
-    fn lane(&self, source: Source, lane: usize) -> f64 {
-        match source {
-            Source::Constant(value) => value,
-            Source::Input { array, index } => self.inputs[self.offsets[array] + index][lane],
-            Source::Step(at) => self.done[at][lane],
-        }
-    }
-
-    /// The values of an operand; a constant is spread.
-    fn block(&self, source: Source) -> Operand<'_> {
-        match source {
-            Source::Constant(value) => Operand::Constant(value),
-            Source::Input { array, index } => {
-                Operand::Block(&self.inputs[self.offsets[array] + index])
+            Self::Reach { .. } => values.iter().fold(true, |all, v| all & (*v >= 0.0)),
+            Self::Leg { home, .. } | Self::Platform { home, .. } => {
+                let least = SINGULAR * home;
+                values.iter().fold(true, |all, v| all & (v.abs() > least))
             }
-            Source::Step(at) => Operand::Block(&self.done[at]),
         }
     }
 }
 
-#[derive(Clone, Copy)]
-enum Operand<'a> {
-    Constant(f64),
-    Block(&'a [f64; BLOCK]),
-}
-
-fn run_step(operation: Operation, fetch: &Fetch<'_>, out: &mut [f64; BLOCK]) {
-    let binary = |a: Source, b: Source, out: &mut [f64; BLOCK], f: fn(f64, f64) -> f64| {
-        zip(fetch.block(a), fetch.block(b), out, f);
-    };
-    match operation {
-        Operation::Add(a, b) => binary(a, b, out, |a, b| a + b),
-        Operation::Sub(a, b) => binary(a, b, out, |a, b| a - b),
-        Operation::Mul(a, b) => binary(a, b, out, |a, b| a * b),
-        Operation::Div(a, b) => binary(a, b, out, |a, b| a / b),
-        Operation::Atan2(y, x) => binary(y, x, out, f64::atan2),
-        Operation::Signed(a, b) => binary(a, b, out, signed),
-        Operation::Neg(a) => binary(a, a, out, |a, _| -a),
-        Operation::Sqrt(a) => binary(a, a, out, |a, _| a.sqrt()),
-        Operation::Sign(a) => binary(a, a, out, |a, _| signed(1.0, a)),
-        Operation::Sine(a) => trigonometric(fetch.block(a), out, f64::sin, f64x4::sin),
-        Operation::Cosine(a) => trigonometric(fetch.block(a), out, f64::cos, f64x4::cos),
-    }
-}
-
-/// a with the sign of b; zero where b is zero.
+/// a with the sign of b; zero where b is zero or no number.
+#[inline(always)]
 pub(crate) fn signed(a: f64, b: f64) -> f64 {
-    if b > 0.0 {
-        a
-    } else if b < 0.0 {
-        -a
+    // On bits, which vectors of all processors have operations for.
+    let sign = b.to_bits() & (-0.0_f64).to_bits();
+    if b > 0.0 || b < 0.0 {
+        f64::from_bits(a.to_bits() ^ sign)
     } else {
         0.0
-    }
-}
-
-#[inline]
-fn zip(a: Operand<'_>, b: Operand<'_>, out: &mut [f64; BLOCK], f: impl Fn(f64, f64) -> f64) {
-    match (a, b) {
-        (Operand::Block(a), Operand::Block(b)) => {
-            for ((o, a), b) in out.iter_mut().zip(a).zip(b) {
-                *o = f(*a, *b);
-            }
-        }
-        (Operand::Constant(a), Operand::Block(b)) => {
-            for (o, b) in out.iter_mut().zip(b) {
-                *o = f(a, *b);
-            }
-        }
-        (Operand::Block(a), Operand::Constant(b)) => {
-            for (o, a) in out.iter_mut().zip(a) {
-                *o = f(*a, b);
-            }
-        }
-        (Operand::Constant(a), Operand::Constant(b)) => out.fill(f(a, b)),
-    }
-}
-
-/// Sine or cosine, four lanes at a time.
-fn trigonometric(
-    a: Operand<'_>,
-    out: &mut [f64; BLOCK],
-    one: fn(f64) -> f64,
-    four: fn(f64x4) -> f64x4,
-) {
-    let Operand::Block(angles) = a else {
-        if let Operand::Constant(angle) = a {
-            out.fill(one(angle));
-        }
-        return;
-    };
-    for (o, a) in out
-        .as_chunks_mut::<4>()
-        .0
-        .iter_mut()
-        .zip(angles.as_chunks::<4>().0)
-    {
-        *o = four(f64x4::new(*a)).to_array();
     }
 }

@@ -1,0 +1,291 @@
+//! The steps of a program as passes over a block, two or three steps at once where a value is used once
+//! or where several steps share an operand.
+
+use crate::lowering::{Operation, Program, Source, peephole};
+use std::collections::HashMap;
+
+/// What can be fused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Arithmetic {
+    Add,
+    Sub,
+    Mul,
+}
+
+/// What a pass computes of its operands a, b, c, d.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Kind {
+    /// a ∘ b
+    One(Arithmetic),
+    /// (a ∘ b) ∘ c
+    Then(Arithmetic, Arithmetic),
+    /// c - (a ∘ b)
+    From(Arithmetic),
+    /// (a ∘ b) ∘ (c ∘ d): first, middle, last
+    Both(Arithmetic, Arithmetic, Arithmetic),
+    /// a × b and a × c
+    TwoProducts,
+    /// a × b, a × c and a × d
+    ThreeProducts,
+    Divide,
+    Negate,
+    Root,
+    Sign,
+    /// b with the sign of a
+    Signed,
+    /// b, c and d with the sign of a
+    ThreeSigned,
+    /// The angle of the direction (b, a)
+    Direction,
+    /// Sine and cosine of a
+    Angle,
+}
+
+/// A number of a program; constants by their bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Value {
+    Constant(u64),
+    Input { array: usize, index: usize },
+    Step(usize),
+}
+
+impl Value {
+    pub(super) const fn of(source: Source) -> Self {
+        match source {
+            Source::Constant(value) => Self::Constant(value.to_bits()),
+            Source::Input { array, index } => Self::Input { array, index },
+            Source::Step(at) => Self::Step(at),
+        }
+    }
+
+    /// Whether it is no constant and no input.
+    pub(super) const fn is_computed(self) -> bool {
+        matches!(self, Self::Step(_))
+    }
+}
+
+/// Results of a pass, at most.
+pub(super) const RESULTS: usize = 3;
+
+/// A pass over a block whose operands have no place yet.
+#[derive(Debug, Clone)]
+pub(super) struct Draft {
+    pub(super) kind: Kind,
+    pub(super) operands: Vec<Value>,
+    /// What it computes; of an angle the sine and the cosine, of which one may be unused.
+    pub(super) results: [Option<Value>; RESULTS],
+}
+
+impl Draft {
+    fn new(kind: Kind, operands: &[Source], result: Value) -> Self {
+        Self {
+            kind,
+            operands: operands.iter().map(|&source| Value::of(source)).collect(),
+            results: [Some(result), None, None],
+        }
+    }
+}
+
+/// The passes of a program, in its order but for those that are done with an earlier one.
+pub(super) fn drafts(program: &Program) -> Vec<Draft> {
+    let fuse = Fuse::new(program);
+    let mut angles = angles(program);
+    let mut drafts = Vec::new();
+    for (at, step) in program.steps.iter().enumerate() {
+        if fuse.fused[at] {
+            continue;
+        }
+        if let Operation::Sine(angle) | Operation::Cosine(angle) = step.operation {
+            // Both at the place of the first.
+            if let Some([sine, cosine]) = angles.remove(&Value::of(angle)) {
+                drafts.push(Draft {
+                    kind: Kind::Angle,
+                    operands: vec![Value::of(angle)],
+                    results: [sine.map(Value::Step), cosine.map(Value::Step), None],
+                });
+            }
+            continue;
+        }
+        drafts.push(fuse.draft(at, step.operation));
+    }
+    sharing(drafts)
+}
+
+/// The steps that hold the sine and the cosine of each angle.
+fn angles(program: &Program) -> HashMap<Value, [Option<usize>; 2]> {
+    let mut angles: HashMap<Value, [Option<usize>; 2]> = HashMap::new();
+    for (at, step) in program.steps.iter().enumerate() {
+        let (angle, which) = match step.operation {
+            Operation::Sine(angle) => (angle, 0),
+            Operation::Cosine(angle) => (angle, 1),
+            _ => continue,
+        };
+        angles.entry(Value::of(angle)).or_default()[which] = Some(at);
+    }
+    angles
+}
+
+/// The arithmetic of a step, and its operands.
+fn arithmetic(operation: Operation) -> Option<(Arithmetic, Source, Source)> {
+    match operation {
+        Operation::Add(a, b) => Some((Arithmetic::Add, a, b)),
+        Operation::Sub(a, b) => Some((Arithmetic::Sub, a, b)),
+        Operation::Mul(a, b) => Some((Arithmetic::Mul, a, b)),
+        _ => None,
+    }
+}
+
+struct Fuse<'p> {
+    program: &'p Program,
+    /// Whether a step is computed by the only one that needs it.
+    fused: Vec<bool>,
+}
+
+impl<'p> Fuse<'p> {
+    fn new(program: &'p Program) -> Self {
+        let count = program.steps.len();
+        let mut kept = vec![false; count];
+        for entry in &program.entries {
+            if let Source::Step(at) = entry.source {
+                kept[at] = true;
+            }
+        }
+        for guard in &program.guards {
+            if let Source::Step(at) = guard.source {
+                kept[at] = true;
+            }
+        }
+        let uses = peephole::uses(program);
+        let mut fused = vec![false; count];
+        // From the end, so that a step which is fused into another one takes none into itself.
+        for at in (0..count).rev() {
+            let operands = arithmetic(program.steps[at].operation).filter(|_| !fused[at]);
+            for source in operands.into_iter().flat_map(|(_, a, b)| [a, b]) {
+                if let Source::Step(inner) = source {
+                    let is_arithmetic = arithmetic(program.steps[inner].operation).is_some();
+                    fused[inner] = is_arithmetic && uses[inner] == 1 && !kept[inner];
+                }
+            }
+        }
+        Self { program, fused }
+    }
+
+    /// The step that is computed with the one that needs it.
+    fn inner(&self, source: Source) -> Option<(Arithmetic, Source, Source)> {
+        match source {
+            Source::Step(at) if self.fused[at] => arithmetic(self.program.steps[at].operation),
+            _ => None,
+        }
+    }
+
+    fn draft(&self, at: usize, operation: Operation) -> Draft {
+        let of = |kind: Kind, operands: &[Source]| Draft::new(kind, operands, Value::Step(at));
+        match operation {
+            Operation::Div(a, b) => of(Kind::Divide, &[a, b]),
+            Operation::Signed(a, b) => of(Kind::Signed, &[b, a]),
+            Operation::Atan2(y, x) => of(Kind::Direction, &[y, x]),
+            Operation::Neg(a) => of(Kind::Negate, &[a]),
+            Operation::Sqrt(a) => of(Kind::Root, &[a]),
+            Operation::Sign(a) => of(Kind::Sign, &[a]),
+            Operation::Sine(a) | Operation::Cosine(a) => of(Kind::Angle, &[a]),
+            Operation::Add(a, b) => self.arithmetic(at, Arithmetic::Add, a, b),
+            Operation::Sub(a, b) => self.arithmetic(at, Arithmetic::Sub, a, b),
+            Operation::Mul(a, b) => self.arithmetic(at, Arithmetic::Mul, a, b),
+        }
+    }
+
+    fn arithmetic(&self, at: usize, middle: Arithmetic, left: Source, right: Source) -> Draft {
+        let of = |kind: Kind, operands: &[Source]| Draft::new(kind, operands, Value::Step(at));
+        match (self.inner(left), self.inner(right)) {
+            (None, None) => of(Kind::One(middle), &[left, right]),
+            (Some((first, a, b)), None) => of(Kind::Then(first, middle), &[a, b, right]),
+            (None, Some((last, a, b))) if middle == Arithmetic::Sub => {
+                of(Kind::From(last), &[a, b, left])
+            }
+            // Sums and products may change sides.
+            (None, Some((last, a, b))) => of(Kind::Then(last, middle), &[a, b, left]),
+            (Some((first, a, b)), Some((last, c, d))) => {
+                of(Kind::Both(first, middle, last), &[a, b, c, d])
+            }
+        }
+    }
+}
+
+/// The same passes, where products with a common factor, or numbers that take a common sign, are computed
+/// together.
+fn sharing(drafts: Vec<Draft>) -> Vec<Draft> {
+    let mut made: HashMap<Value, usize> = HashMap::new();
+    let mut users: HashMap<(Kind, Value), Vec<usize>> = HashMap::new();
+    for (number, draft) in drafts.iter().enumerate() {
+        made.extend(draft.results.into_iter().flatten().map(|v| (v, number)));
+        for common in draft.common() {
+            users.entry((draft.kind, common)).or_default().push(number);
+        }
+    }
+    let mut taken = vec![false; drafts.len()];
+    let mut shared = Vec::new();
+    for (number, draft) in drafts.iter().enumerate() {
+        if taken[number] {
+            continue;
+        }
+        let is_there = |value: &Value| made.get(value).is_none_or(|&maker| maker < number);
+        // Later passes whose operands are there already.
+        let mates = |common: Value| -> Vec<usize> {
+            let later = users[&(draft.kind, common)].iter().copied();
+            later
+                .filter(|&mate| mate > number && !taken[mate])
+                .filter(|&mate| drafts[mate].operands.iter().all(is_there))
+                .take(RESULTS - 1)
+                .collect()
+        };
+        let choices = draft.common().map(|common| (common, mates(common)));
+        let best = choices.reduce(|a, b| if b.1.len() > a.1.len() { b } else { a });
+        let together = best.and_then(|(common, mates)| {
+            let members = std::iter::once(number).chain(mates.iter().copied());
+            let draft = draft.with_common(common, members.map(|m| &drafts[m]).collect());
+            draft.map(|draft| (draft, mates))
+        });
+        match together {
+            Some((draft, mates)) => {
+                mates.into_iter().for_each(|mate| taken[mate] = true);
+                shared.push(draft);
+            }
+            None => shared.push(draft.clone()),
+        }
+    }
+    shared
+}
+
+impl Draft {
+    /// The operands that it may share with others of its kind.
+    fn common(&self) -> impl Iterator<Item = Value> {
+        let count = match self.kind {
+            Kind::One(Arithmetic::Mul) if self.operands[0] == self.operands[1] => 1,
+            Kind::One(Arithmetic::Mul) => 2,
+            Kind::Signed => 1,
+            _ => 0,
+        };
+        self.operands.clone().into_iter().take(count)
+    }
+
+    /// Several passes of its kind as one, where there is a pass for so many.
+    fn with_common(&self, common: Value, members: Vec<&Self>) -> Option<Self> {
+        let kind = match (self.kind, members.len()) {
+            (Kind::One(_), 2) => Kind::TwoProducts,
+            (Kind::One(_), 3) => Kind::ThreeProducts,
+            (Kind::Signed, 3) => Kind::ThreeSigned,
+            _ => return None,
+        };
+        let mut draft = Self {
+            kind,
+            operands: vec![common],
+            results: [None; RESULTS],
+        };
+        for (result, member) in draft.results.iter_mut().zip(members) {
+            *result = member.results[0];
+            let other = usize::from(member.operands[0] == common);
+            draft.operands.push(member.operands[other]);
+        }
+        Some(draft)
+    }
+}

@@ -1,0 +1,184 @@
+//! The passes over a block, for the widest vectors that the processor has.
+//!
+//! The code is plain loops over arrays; it is compiled once for every width of vectors and chosen at run
+//! time. No pass fuses a multiplication with an addition into one rounding, but for the polynomials of
+//! sines and cosines, which take most of the arithmetic: AVX2 and AVX-512 give the same numbers to the
+//! last digit.
+
+use super::fuse::{Arithmetic, Kind};
+use super::plan::{Pass, Plan, Slot};
+use super::trigonometry::sines_and_cosines;
+use super::{BLOCK, signed};
+use pulp::NullaryFnOnce;
+use std::cell::Cell;
+
+/// Numbers that are worked on at a time: the widest vector.
+const WIDTH: usize = 8;
+
+/// The values of one number at the samples of a block. Cells, because a step's result may lie where its
+/// operands are.
+pub(super) type Lanes = [Cell<f64>; BLOCK];
+
+/// Runs a plan over a block.
+pub(super) fn run(plan: &Plan, blocks: &[Lanes]) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let run = Run::<true> { plan, blocks };
+        if let Some(simd) = pulp::x86::V4::try_new() {
+            return simd.vectorize(run);
+        }
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            return simd.vectorize(run);
+        }
+    }
+    Run::<false> { plan, blocks }.call();
+}
+
+/// `FUSED`: whether the processor adds a product in one rounding.
+#[derive(Clone, Copy)]
+struct Run<'a, const FUSED: bool> {
+    plan: &'a Plan,
+    blocks: &'a [Lanes],
+}
+
+impl<const FUSED: bool> NullaryFnOnce for Run<'_, FUSED> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for pass in &self.plan.passes {
+            self.pass(pass);
+        }
+    }
+}
+
+/// The body with `$f` as the function of an [`Arithmetic`].
+macro_rules! with {
+    ($operation:expr, $f:ident, $body:expr) => {
+        match $operation {
+            Arithmetic::Add => {
+                let $f = |x: f64, y: f64| x + y;
+                $body
+            }
+            Arithmetic::Sub => {
+                let $f = |x: f64, y: f64| x - y;
+                $body
+            }
+            Arithmetic::Mul => {
+                let $f = |x: f64, y: f64| x * y;
+                $body
+            }
+        }
+    };
+}
+
+impl<'a, const FUSED: bool> Run<'a, FUSED> {
+    #[inline(always)]
+    fn pass(&self, at: &Pass) {
+        match at.kind {
+            Kind::One(first) => with!(first, f, self.each(at, |[a, b]| f(a, b))),
+            Kind::Then(first, then) => {
+                with!(
+                    first,
+                    f,
+                    with!(then, g, self.each(at, |[a, b, c]| g(f(a, b), c)))
+                );
+            }
+            Kind::From(first) => with!(first, f, self.each(at, |[a, b, c]| c - f(a, b))),
+            Kind::Both(first, middle, last) => with!(
+                first,
+                f,
+                with!(
+                    middle,
+                    g,
+                    with!(last, h, self.each(at, |[a, b, c, d]| g(f(a, b), h(c, d))))
+                )
+            ),
+            Kind::Divide => self.each(at, |[a, b]| a / b),
+            Kind::Negate => self.each(at, |[a]| -a),
+            Kind::Root => self.each(at, |[a]| a.sqrt()),
+            Kind::Sign => self.each(at, |[a]| signed(1.0, a)),
+            Kind::Signed => self.each(at, |[a, b]| signed(b, a)),
+            Kind::ThreeSigned => self.three(at, |a, b| signed(b, a)),
+            Kind::TwoProducts => self.two(at, |a, b| a * b),
+            Kind::ThreeProducts => self.three(at, |a, b| a * b),
+            Kind::Direction => self.each(at, |[a, b]| a.atan2(b)),
+            Kind::Angle => self.angles(at),
+        }
+    }
+
+    #[inline(always)]
+    fn block(&self, slot: Slot) -> &'a [[Cell<f64>; WIDTH]] {
+        self.blocks[slot].as_chunks().0
+    }
+
+    /// One result of N operands.
+    #[inline(always)]
+    fn each<const N: usize>(&self, at: &Pass, f: impl Fn([f64; N]) -> f64) {
+        let operands: [_; N] = std::array::from_fn(|i| self.block(at.operands[i]));
+        let results = self.block(at.results[0]);
+        for part in 0..BLOCK / WIDTH {
+            let values: [[f64; WIDTH]; N] = std::array::from_fn(|i| load(&operands[i][part]));
+            let found = std::array::from_fn(|k| f(std::array::from_fn(|i| values[i][k])));
+            store(&results[part], found);
+        }
+    }
+
+    /// Two results of a common operand and one of their own.
+    #[inline(always)]
+    fn two(&self, at: &Pass, f: impl Fn(f64, f64) -> f64) {
+        let operands: [_; 3] = std::array::from_fn(|i| self.block(at.operands[i]));
+        let results: [_; 2] = std::array::from_fn(|i| self.block(at.results[i]));
+        for part in 0..BLOCK / WIDTH {
+            let [a, b, c] = operands.map(|operand| load(&operand[part]));
+            store(&results[0][part], both(a, b, &f));
+            store(&results[1][part], both(a, c, &f));
+        }
+    }
+
+    /// Three results of a common operand and one of their own.
+    #[inline(always)]
+    fn three(&self, at: &Pass, f: impl Fn(f64, f64) -> f64) {
+        let operands: [_; 4] = std::array::from_fn(|i| self.block(at.operands[i]));
+        let results: [_; 3] = std::array::from_fn(|i| self.block(at.results[i]));
+        for part in 0..BLOCK / WIDTH {
+            let [a, b, c, d] = operands.map(|operand| load(&operand[part]));
+            store(&results[0][part], both(a, b, &f));
+            store(&results[1][part], both(a, c, &f));
+            store(&results[2][part], both(a, d, &f));
+        }
+    }
+
+    /// Sines and cosines.
+    #[inline(always)]
+    fn angles(&self, at: &Pass) {
+        let angles = self.block(at.operands[0]);
+        let (sines, cosines) = (self.block(at.results[0]), self.block(at.results[1]));
+        for part in 0..BLOCK / WIDTH {
+            let (sine, cosine) = sines_and_cosines::<WIDTH, FUSED>(load(&angles[part]));
+            store(&sines[part], sine);
+            store(&cosines[part], cosine);
+        }
+    }
+}
+
+#[inline(always)]
+fn both(a: [f64; WIDTH], b: [f64; WIDTH], f: impl Fn(f64, f64) -> f64) -> [f64; WIDTH] {
+    std::array::from_fn(|k| f(a[k], b[k]))
+}
+
+#[inline(always)]
+fn load<const N: usize>(from: &[Cell<f64>; N]) -> [f64; N] {
+    let mut values = [0.0; N];
+    for (value, cell) in values.iter_mut().zip(from) {
+        *value = cell.get();
+    }
+    values
+}
+
+#[inline(always)]
+pub(super) fn store<const N: usize>(to: &[Cell<f64>; N], values: [f64; N]) {
+    for (cell, value) in to.iter().zip(values) {
+        cell.set(value);
+    }
+}

@@ -1,0 +1,144 @@
+//! Sines and cosines of several angles at once, as loops that become vectors.
+//!
+//! The same functions as those of the runtime crate, which generated code calls: the angle is reduced to
+//! [-π/4, π/4] by a multiple n of π/2 in three parts (Cody and Waite), of which the first two have 33
+//! bits, so that their products with n are exact; what remains goes into the minimax polynomials of
+//! fdlibm; the two lowest bits of n exchange sine and cosine and turn their signs.
+
+/// Largest angle (rad) that is reduced here; beyond it the library's own functions answer.
+const LARGEST: f64 = 1e5;
+
+/// Adding and subtracting 1.5 × 2⁵² rounds to an integer, which then stands in the lowest bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// π/2 in three parts: 33 bits, 33 bits, the rest.
+const HALF_PI: [f64; 3] = [
+    f64::from_bits(0x3FF9_21FB_5440_0000),
+    f64::from_bits(0x3DD0_B461_1A60_0000),
+    f64::from_bits(0x3BA3_198A_2E03_7073),
+];
+
+/// (sin x - x) / x³ in powers of x², the highest first.
+const SINE: [f64; 6] = [
+    1.589_690_995_211_55e-10,
+    -2.505_076_025_340_686_3e-8,
+    2.755_731_370_707_006_8e-6,
+    -1.984_126_982_985_795e-4,
+    8.333_333_333_322_49e-3,
+    -1.666_666_666_666_663_2e-1,
+];
+
+/// (cos x - 1 + x²/2) / x⁴ in powers of x², the highest first.
+const COSINE: [f64; 6] = [
+    -1.135_964_755_778_819_5e-11,
+    2.087_572_321_298_175e-9,
+    -2.755_731_435_139_066_3e-7,
+    2.480_158_728_947_673e-5,
+    -1.388_888_888_887_411e-3,
+    4.166_666_666_666_66e-2,
+];
+
+/// Sines and cosines of angles in radians, within two units in the last place. `FUSED`: whether products
+/// are added in one rounding, for processors that have an instruction for that.
+#[inline(always)]
+pub(super) fn sines_and_cosines<const N: usize, const FUSED: bool>(
+    angles: [f64; N],
+) -> ([f64; N], [f64; N]) {
+    // One comparison for all: `&` rather than `&&`, for there is nothing to gain from an early end.
+    let mut small = true;
+    for angle in &angles {
+        small &= angle.abs() <= LARGEST;
+    }
+    if !small {
+        return one_by_one(angles);
+    }
+    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
+    for lane in 0..N {
+        (sines[lane], cosines[lane]) = sine_and_cosine::<FUSED>(angles[lane]);
+    }
+    (sines, cosines)
+}
+
+#[cold]
+#[inline(never)]
+fn one_by_one<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+    (angles.map(f64::sin), angles.map(f64::cos))
+}
+
+/// a b + c.
+#[inline(always)]
+fn add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+#[inline(always)]
+fn polynomial<const FUSED: bool>(z: f64, terms: [f64; 6]) -> f64 {
+    let mut value = terms[0];
+    for term in &terms[1..] {
+        value = add::<FUSED>(value, z, *term);
+    }
+    value
+}
+
+#[inline(always)]
+fn sine_and_cosine<const FUSED: bool>(x: f64) -> (f64, f64) {
+    let shifted = add::<FUSED>(x, std::f64::consts::FRAC_2_PI, ROUND);
+    let (n, quadrant) = (shifted - ROUND, shifted.to_bits());
+    let reduced = |r: f64, part: f64| add::<FUSED>(n, -part, r);
+    let r = HALF_PI.into_iter().fold(x, reduced);
+    let z = r * r;
+    let sine = add::<FUSED>(r * z, polynomial::<FUSED>(z, SINE), r);
+    let cosine = add::<FUSED>(z * z, polynomial::<FUSED>(z, COSINE), 1.0 - 0.5 * z);
+    let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
+    // Odd quadrants exchange sine and cosine.
+    let exchange = (sine ^ cosine) & 0_u64.wrapping_sub(quadrant & 1);
+    let turned = |quadrant: u64| (quadrant & 2) << 62;
+    (
+        f64::from_bits((sine ^ exchange) ^ turned(quadrant)),
+        f64::from_bits((cosine ^ exchange) ^ turned(quadrant.wrapping_add(1))),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LARGEST, sines_and_cosines};
+
+    /// Distance in units in the last place of `exact`.
+    fn ulps(found: f64, exact: f64) -> f64 {
+        let ulp = f64::from_bits(exact.abs().to_bits() + 1) - exact.abs();
+        (found - exact).abs() / ulp
+    }
+
+    #[test]
+    fn sines_and_cosines_are_within_two_ulps() {
+        assert_near::<false>();
+        assert_near::<true>();
+    }
+
+    fn assert_near<const FUSED: bool>() {
+        let mut worst = 0.0_f64;
+        for scale in [1e-8, 1.0, 4.0, 100.0, LARGEST] {
+            for k in 0..20_000_u32 {
+                let angles: [f64; 8] = std::array::from_fn(|lane| {
+                    // A sequence that fills the interval evenly.
+                    let part = f64::from(8 * k + lane as u32) * 0.618_033_988_749_894_9;
+                    scale * (2.0 * part.fract() - 1.0)
+                });
+                let (sines, cosines) = sines_and_cosines::<8, FUSED>(angles);
+                for (lane, x) in angles.iter().enumerate() {
+                    worst = worst.max(ulps(sines[lane], x.sin()));
+                    worst = worst.max(ulps(cosines[lane], x.cos()));
+                }
+            }
+        }
+        assert!(worst <= 2.0, "{worst} ulps");
+    }
+
+    #[test]
+    fn large_angles_and_those_that_are_no_numbers_are_the_library_s() {
+        let (sines, cosines) = sines_and_cosines::<4, false>([1e300, 0.5, f64::NAN, f64::INFINITY]);
+        assert_eq!(sines[0], 1e300_f64.sin());
+        assert_eq!(cosines[1], 0.5_f64.cos());
+        assert!(sines[2].is_nan() && cosines[3].is_nan());
+    }
+}
