@@ -3,13 +3,18 @@
 use crate::{
     InterpretedRobot,
     failure::{Failure, Problem},
+    output::counted,
 };
 use overact_codegen::{
     Effort, Request, RobotModel, compile_with,
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{self, Write},
+    path::Path,
+};
 
 /// A robot with its description.
 #[derive(Debug)]
@@ -68,6 +73,37 @@ fn compiled(
 ) -> Result<(Description, RobotModel), Diagnostics> {
     let model = compile_with(source, request)?;
     Ok((description::parse(source)?, model))
+}
+
+/// What a description says that may not be meant: a second motor marked by mistake looks like
+/// redundancy, so redundancy that `kept_actuators` does not speak of is worth a word.
+#[must_use]
+pub fn note(robot: &Robot) -> Option<String> {
+    let mechanism = &robot.model.mechanism;
+    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    if n <= r || robot.description.identification.kept_actuators.is_some() {
+        return None;
+    }
+    let known = mechanism.actuator_names();
+    let kept = mechanism
+        .kept_actuators
+        .iter()
+        .map(|&at| known[at].as_str());
+    let kept = kept.collect::<Vec<_>>().join("\", \"");
+    Some(format!(
+        "{n} actuators ({}) drive {}. If that is meant, name the {r} that case 2 keeps, \
+         kept_actuators = [\"{kept}\"] in [identification]; else take `actuated = true` from a joint",
+        known.join(", "),
+        counted(r, "degree of freedom", "degrees of freedom"),
+    ))
+}
+
+/// Tells the [`note`] on stderr; never beside a JSON document, whose errors share stderr with it.
+pub(crate) fn tell_note(robot: &Robot, as_json: bool) {
+    if let (Some(note), false) = (note(robot), as_json) {
+        // A closed stderr is no reason to stop.
+        let _ = writeln!(io::stderr(), "note: {}: {note}", robot.file);
+    }
 }
 
 /// Reads a description's text.

@@ -67,6 +67,34 @@ fn check_tells_sizes_or_every_error() {
     );
 }
 
+/// A second motor in every leg is redundancy, but was it meant?
+#[test]
+fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
+    let bench = Bench::with("planar-3rrr", |text| {
+        let kept = |line: &&str| !line.starts_with("kept_actuators");
+        let text: Vec<&str> = text.lines().filter(kept).collect();
+        text.join("\n")
+            .replace("d = \"l_1\"", "d = \"l_1\"\nactuated = true")
+    });
+    let checked = bench.run(&["check", "my.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.err);
+    let note = "note: my.toml: 6 actuators (leg1_1, leg1_2, leg2_1, leg2_2, leg3_1, leg3_2) drive 3 degrees of freedom";
+    assert!(checked.err.starts_with(note), "{}", checked.err);
+    let document = bench.json(&["check", "my.toml"]);
+    let note = document["robots"][0]["note"].as_str().expect("a note");
+    // What it proposes settles it.
+    let start = note.find("kept_actuators = ").expect("a proposal");
+    let end = start + note[start..].find(']').expect("a list") + 1;
+    let text = bench.read("my.toml");
+    let settled = text.replace(
+        "[identification]",
+        &format!("[identification]\n{}", &note[start..end]),
+    );
+    bench.write("my.toml", &settled);
+    let checked = bench.run(&["check", "my.toml"]);
+    assert_eq!((checked.code, checked.err.as_str()), (Some(0), ""));
+}
+
 #[test]
 fn usage_errors_have_their_own_code() {
     let bench = Bench::new();
