@@ -24,7 +24,11 @@ fn main() -> Result<(), Failure> {
     println!("| robot | legs | generation, quick | generation, thorough | module | compilation |");
     println!("|---|---:|---:|---:|---:|---:|");
     for path in robots(&folder)? {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         if !only.is_empty() && !only.contains(&name) {
             continue;
         }
@@ -48,7 +52,10 @@ fn robots(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut robots = Vec::new();
     for entry in fs::read_dir(folder.join("robots"))? {
         let path = entry?.path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
             robots.push(path);
         }
     }

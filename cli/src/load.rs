@@ -75,26 +75,22 @@ fn compiled(
     Ok((description::parse(source)?, model))
 }
 
-/// What a description says that may not be meant: a second motor marked by mistake looks like
-/// redundancy, so redundancy that `kept_actuators` does not speak of is worth a word.
+/// What a description says that may not be meant: a motor marked by mistake looks like redundancy, so
+/// redundancy that the description does not speak of is worth a word.
 #[must_use]
 pub fn note(robot: &Robot) -> Option<String> {
     let mechanism = &robot.model.mechanism;
     let (n, r) = (mechanism.actuated().len(), mechanism.dof());
-    if n <= r || robot.description.identification.kept_actuators.is_some() {
+    let said = (robot.description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
+    if n <= r || said {
         return None;
     }
-    let known = mechanism.actuator_names();
-    let kept = mechanism
-        .kept_actuators
-        .iter()
-        .map(|&at| known[at].as_str());
-    let kept = kept.collect::<Vec<_>>().join("\", \"");
     Some(format!(
-        "{n} actuators ({}) drive {}. If that is meant, name the {r} that case 2 keeps, \
-         kept_actuators = [\"{kept}\"] in [identification]; else take `actuated = true` from a joint",
-        known.join(", "),
+        "{n} actuators ({}) drive {}. If that is meant, write redundancy = {} in [platform]; else \
+         take `actuated = true` from a joint",
+        mechanism.actuator_names().join(", "),
         counted(r, "degree of freedom", "degrees of freedom"),
+        n - r,
     ))
 }
 

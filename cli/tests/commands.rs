@@ -71,10 +71,7 @@ fn check_tells_sizes_or_every_error() {
 #[test]
 fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
     let bench = Bench::with("planar-3rrr", |text| {
-        let kept = |line: &&str| !line.starts_with("kept_actuators");
-        let text: Vec<&str> = text.lines().filter(kept).collect();
-        text.join("\n")
-            .replace("d = \"l_1\"", "d = \"l_1\"\nactuated = true")
+        text.replace("d = \"l_1\"", "d = \"l_1\"\nactuated = true")
     });
     let checked = bench.run(&["check", "my.toml"]);
     assert_eq!(checked.code, Some(0), "{}", checked.err);
@@ -83,16 +80,29 @@ fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
     let document = bench.json(&["check", "my.toml"]);
     let note = document["robots"][0]["note"].as_str().expect("a note");
     // What it proposes settles it.
-    let start = note.find("kept_actuators = ").expect("a proposal");
-    let end = start + note[start..].find(']').expect("a list") + 1;
+    let (_, proposal) = note.split_once("write ").expect("a proposal");
+    let (key, _) = proposal.split_once(" in [platform]").expect("a table");
     let text = bench.read("my.toml");
-    let settled = text.replace(
-        "[identification]",
-        &format!("[identification]\n{}", &note[start..end]),
+    bench.write(
+        "my.toml",
+        &text.replace("[platform]", &format!("[platform]\n{key}")),
     );
-    bench.write("my.toml", &settled);
     let checked = bench.run(&["check", "my.toml"]);
     assert_eq!((checked.code, checked.err.as_str()), (Some(0), ""));
+    // Another redundancy is an error.
+    bench.write(
+        "my.toml",
+        &text.replace("[platform]", "[platform]\nredundancy = 1"),
+    );
+    let checked = bench.run(&["check", "my.toml"]);
+    assert_eq!(checked.code, Some(1));
+    for words in [
+        "a redundancy of 1 means 4 actuators for 3 coordinates, but the robot has 6",
+        "leg1.1, leg1.2, leg2.1",
+        "redundancy = 3",
+    ] {
+        assert!(checked.err.contains(words), "{words} in {}", checked.err);
+    }
 }
 
 #[test]

@@ -305,3 +305,38 @@ fn joints_that_follow_each_other() {
         ],
     );
 }
+
+#[test]
+fn actuators_beside_the_redundancy_that_is_said() {
+    let said = |wanted: u8, twice: bool| {
+        let motion = format!("motion = \"planar\"\nredundancy = {wanted}");
+        let second = if twice {
+            "d = \"l_1\"\nactuated = true"
+        } else {
+            "d = \"l_1\""
+        };
+        changed(
+            PLANAR,
+            &[("motion = \"planar\"", &motion), ("d = \"l_1\"", second)],
+        )
+    };
+    assert_said(
+        &said(0, true),
+        "19:14",
+        &[
+            "a redundancy of 0 means 3 actuators for 3 coordinates, but the robot has 6",
+            "the actuators are leg1.1, leg1.2, leg2.1, leg2.2, leg3.1, leg3.2",
+            "take `actuated = true` from a joint, or write redundancy = 3",
+        ],
+    );
+    assert_said(
+        &said(1, false),
+        "19:14",
+        &[
+            "a redundancy of 1 means 4 actuators for 3 coordinates, but the robot has 3",
+            "mark more joints",
+        ],
+    );
+    assert_eq!(self::said(&said(3, true)), "a robot");
+    assert_eq!(self::said(&said(0, false)), "a robot");
+}
