@@ -47,6 +47,7 @@ const RECIPROCAL: u64 = ((1_u128 << 122) / P as u128) as u64;
 
 /// Product modulo `P`. A 128-bit remainder would take ten times as long as the two multiplications
 /// by which Barrett's quotient, at most 3 too small, is had.
+#[inline]
 fn mul(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
     let high = (product >> 60) as u64;
@@ -266,6 +267,7 @@ impl Neg for Element {
 
 impl Mul for Element {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         if self.im == 0 && other.im == 0 {
             return Self {

@@ -80,11 +80,11 @@ impl Hasher for FieldHasher {
 
 pub(super) type ByValue<T> = HashMap<Key, T, BuildHasherDefault<FieldHasher>>;
 
-/// Bits for each node in [`Presence`]: of the values that no node has, a sixteenth goes on to the table.
-const BITS_PER_NODE: usize = 32;
+/// Bits for each node in [`Presence`]: so that few of the values that no node has go on to the table.
+const BITS_PER_NODE: usize = 16;
 
 /// Which values some node may have, or its negative. Most values that are asked for belong to no node;
-/// a bit in the cache says so for less than a look into the table.
+/// a bit in the processor's cache says so for less than a look into the table.
 #[derive(Default)]
 struct Presence {
     bits: Vec<u64>,
@@ -283,6 +283,7 @@ impl Graph {
     }
 
     /// The live node, with its sign, of a value.
+    #[inline]
     pub(super) fn find(&self, value: Element) -> Option<Signed> {
         if !self.present.may_have(value) {
             return None;

@@ -75,11 +75,14 @@ pub fn search<'a>(
     } else {
         0
     };
+    let mut known = singles::Known::default();
     loop {
-        let mut saved = singles::improve(&mut graph);
+        let mut saved = singles::improve(&mut graph, &mut known);
         if rounds > 0 {
             rounds -= 1;
             saved += pairs::improve(&mut graph);
+            // There are new nodes.
+            known = singles::Known::default();
         }
         if saved == 0 {
             return graph.overlay();

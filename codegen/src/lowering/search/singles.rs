@@ -1,16 +1,26 @@
 //! Nodes that are one operation away from two others.
 
 use super::graph::{Definition, Graph, Signed};
+use std::collections::HashMap;
 
-/// Replaces nodes as long as something is saved; the operations saved.
-pub(super) fn improve(graph: &mut Graph) -> i32 {
+/// The sums and products of two nodes that have the value of a node, of the nodes that were looked at.
+///
+/// Single replacements add no node and bring none back, so what was found once is all there is: only
+/// less of it may be alive later.
+#[derive(Default)]
+pub(super) struct Known(HashMap<usize, Vec<Definition>>);
+
+/// Replaces every node for which that saves something; the operations saved.
+pub(super) fn improve(graph: &mut Graph, known: &mut Known) -> i32 {
     let mut saved = 0;
+    let mut divisors = graph.divisors();
     for node in 0..graph.len() {
         if graph.is_live(node)
             && graph.cone(node) > 1
-            && let Some((by, saving)) = best(graph, node)
+            && let Some((by, saving)) = best(graph, node, known, &divisors)
         {
             graph.replace(node, by);
+            divisors = graph.divisors();
             saved += saving;
         }
     }
@@ -18,16 +28,25 @@ pub(super) fn improve(graph: &mut Graph) -> i32 {
 }
 
 /// The replacement of a node that saves most, if one saves anything.
-fn best(graph: &mut Graph, node: usize) -> Option<(Definition, i32)> {
+fn best(
+    graph: &mut Graph,
+    node: usize,
+    known: &mut Known,
+    divisors: &[usize],
+) -> Option<(Definition, i32)> {
     if matches!(
         graph.definitions[node],
         Definition::Leaf | Definition::Fixed(..)
     ) {
         return None;
     }
-    let candidates = candidates(graph, node);
+    let pairs = known.0.entry(node).or_insert_with(|| pairs(graph, node));
+    let quotients = quotients(graph, node, divisors);
     let mut best: Option<(Definition, i32)> = None;
-    for by in candidates {
+    for by in pairs.iter().copied().chain(quotients) {
+        if by.operands().any(|o| !graph.is_live(o)) {
+            continue;
+        }
         let saving = graph.saving(node, by);
         if saving <= best.map_or(0, |(_, saving)| saving) {
             continue;
@@ -40,8 +59,8 @@ fn best(graph: &mut Graph, node: usize) -> Option<(Definition, i32)> {
     best
 }
 
-/// All sums, products and quotients of two live nodes that have the node's value.
-fn candidates(graph: &Graph, node: usize) -> Vec<Definition> {
+/// All sums and products of two live nodes that have the node's value.
+fn pairs(graph: &Graph, node: usize) -> Vec<Definition> {
     let target = graph.value(Signed::new(node, false));
     let mut found = Vec::new();
     for other in (0..graph.len()).filter(|&n| n != node && graph.is_live(n)) {
@@ -56,12 +75,17 @@ fn candidates(graph: &Graph, node: usize) -> Vec<Definition> {
         let b = b.filter(|b| b.node() >= other && b.node() != node);
         found.extend(b.map(|b| Definition::Product(a, b)));
     }
-    for divisor in graph.divisors().into_iter().filter(|&d| d != node) {
-        let by = Signed::new(divisor, false);
-        let a = graph
-            .find(target * graph.value(by))
-            .filter(|a| a.node() != node);
-        found.extend(a.map(|a| Definition::Quotient(a, by)));
-    }
     found
+}
+
+/// All quotients of a live node by a divisor that have the node's value.
+fn quotients(graph: &Graph, node: usize, divisors: &[usize]) -> Vec<Definition> {
+    let target = graph.value(Signed::new(node, false));
+    let quotient = |&divisor: &usize| {
+        let by = Signed::new(divisor, false);
+        let a = graph.find(target * graph.value(by))?;
+        (a.node() != node).then_some(Definition::Quotient(a, by))
+    };
+    let divisors = divisors.iter().filter(|&&d| d != node);
+    divisors.filter_map(quotient).collect()
 }
