@@ -80,54 +80,6 @@ impl Hasher for FieldHasher {
 
 pub(super) type ByValue<T> = HashMap<Key, T, BuildHasherDefault<FieldHasher>>;
 
-/// Bits for each node in [`Presence`]: so that few of the values that no node has go on to the table.
-const BITS_PER_NODE: usize = 16;
-
-/// Which values some node may have, or its negative. Most values that are asked for belong to no node;
-/// a bit in the processor's cache says so for less than a look into the table.
-#[derive(Default)]
-struct Presence {
-    bits: Vec<u64>,
-    /// Values that were entered.
-    count: usize,
-}
-
-impl Presence {
-    /// Where a value's bit is. Values are random, so their own bits are a hash of them.
-    fn place(&self, value: Element) -> (usize, u64) {
-        let (re, im) = value.parts();
-        let hash = (re ^ im.rotate_left(31)) as usize;
-        // The number of words is a power of two.
-        ((hash >> 6) & (self.bits.len() - 1), 1 << (hash & 63))
-    }
-
-    fn enter(&mut self, value: Element) {
-        for value in [value, -value] {
-            let (word, bit) = self.place(value);
-            self.bits[word] |= bit;
-        }
-        self.count += 1;
-    }
-
-    fn may_have(&self, value: Element) -> bool {
-        let (word, bit) = self.place(value);
-        self.bits[word] & bit != 0
-    }
-
-    /// Makes room for another value; `all` are those that were entered before.
-    fn make_room(&mut self, all: &[Element]) {
-        if self.bits.len() * 64 >= (self.count + 1) * BITS_PER_NODE {
-            return;
-        }
-        let words = (2 * (self.count + 1) * BITS_PER_NODE / 64).next_power_of_two();
-        *self = Self {
-            bits: vec![0; words],
-            count: 0,
-        };
-        all.iter().for_each(|value| self.enter(*value));
-    }
-}
-
 /// The nodes of a function.
 pub(super) struct Graph {
     pub(super) definitions: Vec<Definition>,
@@ -144,7 +96,6 @@ pub(super) struct Graph {
     is_expensive: Vec<bool>,
     /// Node of each value.
     by_value: ByValue<Signed>,
-    present: Presence,
     /// What the nodes are looked up by: the first point of their meanings.
     values: Vec<Element>,
     inverses: Vec<Element>,
@@ -164,7 +115,6 @@ impl Graph {
             is_sign: Vec::new(),
             is_expensive: Vec::new(),
             by_value: ByValue::default(),
-            present: Presence::default(),
             values: Vec::new(),
             inverses: Vec::new(),
             arena_index: Vec::new(),
@@ -225,8 +175,6 @@ impl Graph {
         self.arena_index.push(None);
         self.changed.push(false);
         self.inverses.push(meaning.value().inverse());
-        self.present.make_room(&self.values);
-        self.present.enter(meaning.value());
         self.values.push(meaning.value());
         let (key, negative) = canonical(meaning.value());
         let known = self.by_value.get(&key);
@@ -283,11 +231,7 @@ impl Graph {
     }
 
     /// The live node, with its sign, of a value.
-    #[inline]
     pub(super) fn find(&self, value: Element) -> Option<Signed> {
-        if !self.present.may_have(value) {
-            return None;
-        }
         let (key, negative) = canonical(value);
         let found = self.by_value.get(&key)?.times(negative);
         self.is_live(found.node()).then_some(found)

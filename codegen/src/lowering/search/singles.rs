@@ -1,14 +1,27 @@
 //! Nodes that are one operation away from two others.
 
 use super::graph::{Definition, Graph, Signed};
+use super::sieve::Sieve;
 use std::collections::HashMap;
 
 /// The sums and products of two nodes that have the value of a node, of the nodes that were looked at.
 ///
 /// Single replacements add no node and bring none back, so what was found once is all there is: only
 /// less of it may be alive later.
-#[derive(Default)]
-pub(super) struct Known(HashMap<usize, Vec<Definition>>);
+pub(super) struct Known {
+    pairs: HashMap<usize, Vec<Definition>>,
+    sieve: Sieve,
+}
+
+impl Known {
+    /// Nothing is known of the graph's nodes yet.
+    pub(super) fn new(graph: &Graph) -> Self {
+        Self {
+            pairs: HashMap::new(),
+            sieve: Sieve::new(graph),
+        }
+    }
+}
 
 /// Replaces every node for which that saves something; the operations saved.
 pub(super) fn improve(graph: &mut Graph, known: &mut Known) -> i32 {
@@ -40,7 +53,9 @@ fn best(
     ) {
         return None;
     }
-    let pairs = known.0.entry(node).or_insert_with(|| pairs(graph, node));
+    let sieve = &known.sieve;
+    let entry = known.pairs.entry(node);
+    let pairs = entry.or_insert_with(|| pairs(graph, node, sieve));
     let quotients = quotients(graph, node, divisors);
     let mut best: Option<(Definition, i32)> = None;
     for by in pairs.iter().copied().chain(quotients) {
@@ -60,15 +75,21 @@ fn best(
 }
 
 /// All sums and products of two live nodes that have the node's value.
-fn pairs(graph: &Graph, node: usize) -> Vec<Definition> {
+fn pairs(graph: &Graph, node: usize, sieve: &Sieve) -> Vec<Definition> {
     let target = graph.value(Signed::new(node, false));
     let mut found = Vec::new();
     for other in (0..graph.len()).filter(|&n| n != node && graph.is_live(n)) {
         for negative in [false, true] {
+            if !sieve.may_be_sum(node, other, negative) {
+                continue;
+            }
             let a = Signed::new(other, negative);
             let b = graph.find(target + -graph.value(a));
             let b = b.filter(|b| b.node() >= other && b.node() != node);
             found.extend(b.map(|b| Definition::Sum(a, b)));
+        }
+        if !sieve.may_be_product(node, other) {
+            continue;
         }
         let a = Signed::new(other, false);
         let b = graph.find(target * graph.inverse(other));
