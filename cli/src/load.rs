@@ -3,13 +3,18 @@
 use crate::{
     InterpretedRobot,
     failure::{Failure, Problem},
+    output::counted,
 };
 use overact_codegen::{
     Effort, Request, RobotModel, compile_with,
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{self, Write},
+    path::Path,
+};
 
 /// A robot with its description.
 #[derive(Debug)]
@@ -68,6 +73,33 @@ fn compiled(
 ) -> Result<(Description, RobotModel), Diagnostics> {
     let model = compile_with(source, request)?;
     Ok((description::parse(source)?, model))
+}
+
+/// What a description says that may not be meant: a motor marked by mistake looks like redundancy, so
+/// redundancy that the description does not speak of is worth a word.
+#[must_use]
+pub fn note(robot: &Robot) -> Option<String> {
+    let mechanism = &robot.model.mechanism;
+    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let said = (robot.description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
+    if n <= r || said {
+        return None;
+    }
+    Some(format!(
+        "{n} actuators ({}) drive {}. If that is meant, write redundancy = {} in [platform]; else \
+         take `actuated = true` from a joint",
+        mechanism.actuator_names().join(", "),
+        counted(r, "degree of freedom", "degrees of freedom"),
+        n - r,
+    ))
+}
+
+/// Tells the [`note`] on stderr; never beside a JSON document, whose errors share stderr with it.
+pub(crate) fn tell_note(robot: &Robot, as_json: bool) {
+    if let (Some(note), false) = (note(robot), as_json) {
+        // A closed stderr is no reason to stop.
+        let _ = writeln!(io::stderr(), "note: {}: {note}", robot.file);
+    }
 }
 
 /// Reads a description's text.

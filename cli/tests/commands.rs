@@ -67,6 +67,44 @@ fn check_tells_sizes_or_every_error() {
     );
 }
 
+/// A second motor in every leg is redundancy, but was it meant?
+#[test]
+fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
+    let bench = Bench::with("planar-3rrr", |text| {
+        text.replace("d = \"l_1\"", "d = \"l_1\"\nactuated = true")
+    });
+    let checked = bench.run(&["check", "my.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.err);
+    let note = "note: my.toml: 6 actuators (leg1_1, leg1_2, leg2_1, leg2_2, leg3_1, leg3_2) drive 3 degrees of freedom";
+    assert!(checked.err.starts_with(note), "{}", checked.err);
+    let document = bench.json(&["check", "my.toml"]);
+    let note = document["robots"][0]["note"].as_str().expect("a note");
+    // What it proposes settles it.
+    let (_, proposal) = note.split_once("write ").expect("a proposal");
+    let (key, _) = proposal.split_once(" in [platform]").expect("a table");
+    let text = bench.read("my.toml");
+    bench.write(
+        "my.toml",
+        &text.replace("[platform]", &format!("[platform]\n{key}")),
+    );
+    let checked = bench.run(&["check", "my.toml"]);
+    assert_eq!((checked.code, checked.err.as_str()), (Some(0), ""));
+    // Another redundancy is an error.
+    bench.write(
+        "my.toml",
+        &text.replace("[platform]", "[platform]\nredundancy = 1"),
+    );
+    let checked = bench.run(&["check", "my.toml"]);
+    assert_eq!(checked.code, Some(1));
+    for words in [
+        "a redundancy of 1 means 4 actuators for 3 coordinates, but the robot has 6",
+        "leg1.1, leg1.2, leg2.1",
+        "redundancy = 3",
+    ] {
+        assert!(checked.err.contains(words), "{words} in {}", checked.err);
+    }
+}
+
 #[test]
 fn usage_errors_have_their_own_code() {
     let bench = Bench::new();

@@ -25,6 +25,10 @@ use crate::error::Actuators;
 use crate::guard::SINGULAR;
 use crate::{Error, math::sqrt};
 
+/// Smallest length of a column of J_p^inv, relative to the longest, by which a coordinate is scaled: far
+/// below what a change of units makes of it, far above rounding.
+const SMALLEST_SCALE: f64 = 1e-5;
+
 /// r kept actuators in one configuration of a robot: the factors of their J_aᵀ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Partition<const R: usize> {
@@ -81,8 +85,8 @@ impl<const R: usize> Partition<R> {
     }
 
     /// Condition number ‖J_aᵀ‖ ‖J_a^-T‖ (largest sum of a row) after every coordinate of the twist is
-    /// scaled by the length of its column in J_p^inv, so that it does not depend on whether lengths are
-    /// in metres or millimetres.
+    /// scaled by the length of its column in J_p^inv (a shorter one than 1e-5 of the longest by that), so
+    /// that it does not depend on whether lengths are in metres or millimetres.
     ///
     /// The actuators' model amplifies errors of Γ¹ by up to this number.
     #[must_use]
@@ -136,6 +140,12 @@ impl<const R: usize> Partition<R> {
                 .iter()
                 .map(|row| row[coordinate] * row[coordinate]);
             *scale = sqrt(squares.sum());
+        }
+        // Where no actuator moves a coordinate the robot itself is singular: a column of rounding must not
+        // be made as long as the others.
+        let least = SMALLEST_SCALE * scales.iter().fold(0.0_f64, |m, s| m.max(*s));
+        for scale in &mut scales {
+            *scale = scale.max(least);
         }
         let size = |row: &[f64; R]| row.iter().map(|e| e.abs()).sum::<f64>();
         let mut largest = 0.0_f64;
@@ -225,6 +235,19 @@ mod tests {
         let near = [[1.0, 1.0], [1.0, 1.0 + 1e-6]];
         let condition = Partition::new(&near, &[0, 1]).unwrap().condition();
         assert!((3e6..5e6).contains(&condition), "{condition:e}");
+    }
+
+    /// The robot's own singularity, where a coordinate's column is nothing but rounding.
+    #[test]
+    fn a_coordinate_that_no_actuator_moves_is_singular() {
+        for small in [0.0, 1e-17, 1e-16] {
+            let jacobian = [[1.0, small], [-1.0, 2.0 * small], [0.5, small]];
+            let found = Partition::new(&jacobian, &[0, 1]);
+            assert!(
+                matches!(found, Err(Error::SingularPartition { condition, .. }) if condition > 1e10),
+                "{small:e}"
+            );
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::{
     failure::Failure,
-    load::{Robot, load_with},
+    load::{Robot, load_with, note, tell_note},
     output::{counted, json, print},
 };
 use overact_codegen::{Effort, Request};
@@ -26,6 +26,8 @@ struct Checked {
     joints: usize,
     actuators: usize,
     dof: usize,
+    /// What may not be meant.
+    note: Option<String>,
 }
 
 /// Runs the command.
@@ -37,7 +39,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     for file in &arguments.files {
         // Whether there is a model does not depend on how few operations it takes.
         match load_with(file, &Request::with_effort(Effort::None)) {
-            Ok(robot) => good.push(Checked::new(robot)),
+            Ok(robot) => {
+                tell_note(&robot, as_json);
+                good.push(Checked::new(robot));
+            }
             Err(failure) => bad.push(failure),
         }
     }
@@ -58,8 +63,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
 impl Checked {
     fn new(robot: Robot) -> Self {
+        let note = note(&robot);
         let mechanism = &robot.model.mechanism;
         Self {
+            note,
             robot: mechanism.name.clone(),
             legs: mechanism.legs.len(),
             joints: mechanism.joints().len(),

@@ -3,7 +3,7 @@
 use crate::{
     effort,
     failure::{Failure, Problem},
-    load::{Robot, load_with},
+    load::{Robot, load_with, tell_note},
     output::{json, print, write},
     progress::Progress,
 };
@@ -103,7 +103,10 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<Robot>, Failure>
     for (at, file) in arguments.files.iter().enumerate() {
         bar.at(at as f64 / count as f64, &file.display().to_string());
         match load_with(file, &arguments.effort.request()) {
-            Ok(robot) => good.push(robot),
+            Ok(robot) => {
+                tell_note(&robot, as_json);
+                good.push(robot);
+            }
             Err(failure) => bad.push(failure),
         }
     }

@@ -4,7 +4,12 @@ mod conditioning;
 mod document;
 mod table;
 
-use crate::{drawing, effort, failure::Failure, load::load_with, output};
+use crate::{
+    drawing, effort,
+    failure::Failure,
+    load::{load_with, tell_note},
+    output,
+};
 use document::Document;
 use std::path::PathBuf;
 
@@ -30,6 +35,7 @@ pub(crate) struct Arguments {
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let robot = load_with(&arguments.file, &arguments.effort.request())?;
+    tell_note(&robot, as_json);
     if let Some(svg) = &arguments.svg {
         let text = drawing::svg(&robot.model.mechanism);
         output::write(vec![(svg.clone(), text.into_bytes())])?;

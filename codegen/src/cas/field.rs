@@ -11,7 +11,9 @@
 //! An identity that holds for all real inputs holds here at random inputs; one that does not hold
 //! fails with a probability of about degree / `P` (Schwartz and Zippel).
 
+use std::collections::HashMap;
 use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::OnceLock;
 
 /// The prime.
 pub const P: u64 = 2_305_648_799_999_999_999;
@@ -47,6 +49,7 @@ const RECIPROCAL: u64 = ((1_u128 << 122) / P as u128) as u64;
 
 /// Product modulo `P`. A 128-bit remainder would take ten times as long as the two multiplications
 /// by which Barrett's quotient, at most 3 too small, is had.
+#[inline]
 fn mul(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
     let high = (product >> 60) as u64;
@@ -234,6 +237,86 @@ impl Element {
     }
 }
 
+impl Element {
+    /// A linear image of the element in the base field.
+    #[must_use]
+    pub fn projection(self) -> u64 {
+        add(self.re, mul(self.im, PROJECTION))
+    }
+
+    /// The projection of the difference of two elements by theirs, or of the sum for a `negative` second.
+    #[must_use]
+    pub fn projected_difference(first: u64, second: u64, negative: bool) -> u64 {
+        if negative {
+            add(first, second)
+        } else {
+            sub(first, second)
+        }
+    }
+}
+
+/// The imaginary unit's projection, any large number.
+const PROJECTION: u64 = 0x1bd1_1bda_a9fc_1a22;
+
+/// A prime factor of `P` - 1, the order of the base field's multiplicative group.
+pub const LOGARITHMS: u32 = 239_857;
+
+/// Logarithms of elements modulo [`LOGARITHMS`]: that of a product is the sum of the factors'.
+///
+/// The norm a² + b² of an element is multiplicative, and its power to (`P` - 1) / [`LOGARITHMS`] is one
+/// of so many roots of unity, whose exponent is looked up (small steps and giant steps).
+#[derive(Debug)]
+pub struct Logarithms {
+    /// Exponents of the first powers of the root of unity.
+    small: HashMap<u64, u32>,
+    /// Its power by which a giant step goes back.
+    giant: u64,
+}
+
+/// Exponents that a giant step goes over.
+const SMALL: u32 = 1 << 13;
+/// The power that makes a root of unity of a norm.
+const COFACTOR: u64 = (P - 1) / LOGARITHMS as u64;
+
+impl Logarithms {
+    /// The table, which is made once.
+    #[must_use]
+    pub fn get() -> &'static Self {
+        static TABLE: OnceLock<Logarithms> = OnceLock::new();
+        TABLE.get_or_init(Self::new)
+    }
+
+    fn new() -> Self {
+        // The order is prime, so every root of unity but one generates all; most numbers lead to one.
+        let roots = (2..).map(|number| power(number, COFACTOR));
+        let root = roots.into_iter().find(|root| *root != 1).unwrap_or(1);
+        let mut small = HashMap::new();
+        let mut at = 1;
+        for exponent in 0..SMALL {
+            small.insert(at, exponent);
+            at = mul(at, root);
+        }
+        Self {
+            small,
+            giant: invert(at),
+        }
+    }
+
+    /// The logarithm of an element and of its negative; `None` for zero.
+    #[must_use]
+    pub fn of(&self, element: Element) -> Option<u32> {
+        let norm = add(mul(element.re, element.re), mul(element.im, element.im));
+        let mut root = power(norm, COFACTOR);
+        for step in 0..LOGARITHMS.div_ceil(SMALL) {
+            if let Some(exponent) = self.small.get(&root) {
+                return Some((step * SMALL + exponent) % LOGARITHMS);
+            }
+            root = mul(root, self.giant);
+        }
+        None
+    }
+}
+
 impl Add for Element {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -266,6 +349,7 @@ impl Neg for Element {
 
 impl Mul for Element {
     type Output = Self;
+    #[inline]
     fn mul(self, other: Self) -> Self {
         if self.im == 0 && other.im == 0 {
             return Self {
@@ -319,6 +403,27 @@ mod tests {
             let root = Element::integer(n).square_root().unwrap();
             assert_eq!(root * root, Element::integer(n));
         }
+    }
+
+    #[test]
+    fn logarithms_and_projections_are_sums() {
+        let logarithms = Logarithms::get();
+        let element = |seed| Element::from_parts(mix(seed), mix(!seed) * (seed & 1));
+        let mut found = std::collections::HashSet::new();
+        for seed in 0..2000 {
+            let (a, b) = (element(seed), element(7 * seed + 1));
+            let [log_a, log_b, product] = [a, b, a * b].map(|e| logarithms.of(e).unwrap());
+            assert_eq!(product, (log_a + log_b) % LOGARITHMS);
+            assert_eq!(logarithms.of(-a), Some(log_a));
+            let difference = |by: Element, negative| {
+                Element::projected_difference(a.projection(), by.projection(), negative)
+            };
+            assert_eq!(difference(b, false), (a - b).projection());
+            assert_eq!(difference(b, true), (a + b).projection());
+            found.insert(log_a);
+        }
+        assert!(found.len() > 1900, "{} logarithms", found.len());
+        assert_eq!(logarithms.of(Element::ZERO), None);
     }
 
     #[test]

@@ -175,7 +175,9 @@ fn resolve(joints: &mut [Joint], shape: &Shape<'_, '_>) {
                     .get(index)
                     .and_then(|j| j.steps.iter().flatten().next())
                 {
-                    item.context.report_once(Diagnostic::new(message, span));
+                    let help = "a joint of its own has `q` in place of the others' variables";
+                    item.context
+                        .report_once(Diagnostic::new(message, span).help(help));
                 }
                 joint.variable = vec![(index, Ratio::ONE)];
             }

@@ -131,6 +131,8 @@ pub struct Platform {
     pub axis_at: [Number; 3],
     /// The home pose.
     pub home: PlatformHome,
+    /// How many actuators more than coordinates the robot is meant to have, if that is said.
+    pub redundancy: Option<Spanned<usize>>,
     /// Its inertial parameters that are not absent.
     pub parameters: Vec<StandardParameter>,
     /// Inertial parameters of the payload, if the robot may carry one.

@@ -48,6 +48,9 @@ pub(super) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
     let word = table
         .require("motion", "for instance motion = \"planar\"")
         .and_then(|i| i.choice(&WORDS));
+    let redundancy = table
+        .get("redundancy")
+        .and_then(|item| Some(Spanned::new(item.size(0)?, item.span.clone())));
     let (axis, home) = (table.get("axis"), table.get("home"));
     table.finish();
     let word = word?;
@@ -59,6 +62,7 @@ pub(super) fn read(item: &Item<'_, '_>, scope: &Scope) -> Option<Platform> {
         motion: Spanned::new(motion, word.span),
         axis_at,
         home: home.unwrap_or(PlatformHome::ZERO),
+        redundancy,
         parameters,
         payload,
         span: table.span.clone(),

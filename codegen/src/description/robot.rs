@@ -257,7 +257,45 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
         table
             .context
             .report(diagnostic.help("mark more joints with actuated = true"));
+    } else {
+        check_redundancy(table, platform, legs);
     }
+}
+
+/// The robot has as many actuators beyond its coordinates as it is said to have.
+fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
+    let name = |(leg, joint): (usize, usize)| {
+        let leg: &Leg = &legs[leg];
+        format!("{}.{}", leg.name.value, leg.joints[joint].name.value)
+    };
+    let names: Vec<String> = actuators(legs).into_iter().map(name).collect();
+    let dof = platform.motion.value.coordinates().len();
+    let Some(wanted) = &platform.redundancy else {
+        return;
+    };
+    if legs.is_empty() || !table.context.is_clean() || names.len() == dof + wanted.value {
+        return;
+    }
+    let message = format!(
+        "a redundancy of {} means {} actuators for {dof} coordinates, but the robot has {}",
+        wanted.value,
+        dof + wanted.value,
+        names.len()
+    );
+    let help = if names.len() > dof + wanted.value {
+        format!(
+            "take `actuated = true` from a joint, or write redundancy = {}",
+            names.len() - dof
+        )
+    } else {
+        "mark more joints with actuated = true, or name the redundancy that the robot has"
+            .to_owned()
+    };
+    table.context.report(
+        Diagnostic::new(message, wanted.span.clone())
+            .label(format!("the actuators are {}", names.join(", ")))
+            .help(help),
+    );
 }
 
 /// Leg and joint names are joined by underscores, so two bodies can come by the same name.

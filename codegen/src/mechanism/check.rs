@@ -1,7 +1,9 @@
 //! From a description to a checked mechanism: mobility, closure at home, leg singularities.
 
 use super::actuation::{rates_per_velocity, shared_velocities};
-use super::home::{Home, HomeError};
+use super::explain;
+use super::home::Home;
+use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
 use crate::derivation::Underivable;
 use crate::description::Description;
@@ -16,6 +18,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     let mut errors = Diagnostics::new();
     check_actuators(description, &mechanism, &mut errors);
     check_leg_sizes(description, &mut errors);
+    check_structure(description, &mechanism, &mut errors);
     errors.into_result(())?;
     let rough = rough_home(description);
     match Home::refine(&mechanism, &rough) {
@@ -24,7 +27,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
             let mut errors = Diagnostics::new();
             found
                 .iter()
-                .for_each(|e| errors.push(home_error(description, e)));
+                .for_each(|e| errors.push(explain::home_error(description, &mechanism, &rough, e)));
             return Err(errors);
         }
     }
@@ -42,18 +45,10 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
     let independent = mechanism.independent_actuators();
     let r = mechanism.dof();
     if independent.len() < r {
-        let span = description.platform.as_ref().map(|p| p.motion.span.clone());
-        let error = Diagnostic::new(
-            "the actuators do not determine the platform's motion at the home configuration",
-            span.unwrap_or(description.name.span.clone()),
-        );
-        let label = format!(
-            "{r} coordinates, {} independent among the {} actuated joints",
-            independent.len(),
-            mechanism.actuated().len()
-        );
-        let help = "actuate another joint, or choose a home pose where the robot is not singular";
-        return Err(Diagnostics::from(error.label(label).help(help)));
+        return Err(Diagnostics::from(explain::underactuated(
+            description,
+            mechanism,
+        )));
     }
     if mechanism.kept_actuators.is_empty() {
         mechanism.kept_actuators = independent;
@@ -166,6 +161,22 @@ fn check_leg_sizes(description: &Description, errors: &mut Diagnostics) {
     }
 }
 
+/// The joints of every leg must be determined by the motion of its end. Legs of one shape share their
+/// errors.
+fn check_structure(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
+    let Some(platform) = &mechanism.platform else {
+        return;
+    };
+    let pose = rough_home(description).pose;
+    for (place, leg) in description.legs.iter().zip(&mechanism.legs) {
+        let Some(end) = &leg.end else { continue };
+        let velocities = shared_velocities(platform.motion, &pose, end);
+        for defect in defects(leg, &velocities) {
+            errors.push(explain::defect(place, &defect));
+        }
+    }
+}
+
 fn rough_home(description: &Description) -> Home {
     let joints = description.legs.iter().flat_map(|leg| {
         let own = leg
@@ -209,33 +220,6 @@ fn home_pose(platform: &crate::description::Platform) -> Vec<f64> {
     pose
 }
 
-fn home_error(description: &Description, error: &HomeError) -> Diagnostic {
-    let leg = |index: usize| &description.legs[index];
-    match error {
-        HomeError::Open { leg: index, gap } => {
-            let leg = leg(*index);
-            Diagnostic::new(
-                format!("leg `{}` does not close at the home configuration", leg.name.value),
-                leg.span.clone(),
-            )
-            .label(format!("its end stays {gap:.3} (m, rad) away from the platform"))
-            .help("check lengths, attachment and base; give rough joint positions in `home` near the wanted working mode")
-        }
-        HomeError::Singular {
-            leg: index,
-            condition,
-        } => {
-            let leg = leg(*index);
-            Diagnostic::new(
-                format!("leg `{}` is singular at the home configuration", leg.name.value),
-                leg.span.clone(),
-            )
-            .label(format!("its Jacobian has the condition number {condition:.1e}"))
-            .help("choose a home pose where the leg is neither stretched nor folded, and joints whose motions are independent")
-        }
-    }
-}
-
 /// The leg must be able to follow every motion of the platform.
 fn check_mobility(
     description: &Description,
@@ -256,15 +240,7 @@ fn check_mobility(
     };
     let missed = &wanted - &jacobian * (rates * &wanted);
     if missed.amax() > 1e-6 {
-        let place = &description.legs[index];
-        errors.push(
-            Diagnostic::new(
-                format!("leg `{}` cannot follow the platform's motion", leg.name),
-                place.span.clone(),
-            )
-            .label(format!("{} joints, {} platform coordinates", jacobian.ncols(), wanted.ncols()))
-            .help("the leg blocks a motion that the platform has: add a passive joint, or choose another platform motion or leg end"),
-        );
+        errors.push(explain::blocked(description, mechanism, index, &missed));
     }
 }
 

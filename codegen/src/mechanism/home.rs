@@ -116,8 +116,8 @@ enum Failure {
     Singular(f64),
 }
 
-/// Damped Gauss-Newton on all closure equations of a leg.
-fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<Vec<f64>, Failure> {
+/// Damped Gauss-Newton on all closure equations of a leg: where it ends, and the largest remaining error.
+fn iterate(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> (Vec<f64>, f64) {
     let mut q = start.to_vec();
     let mut gap = f64::INFINITY;
     let mut damping = 1e-6;
@@ -126,7 +126,7 @@ fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<
         gap = error.amax();
         // The maximum of numbers passes over NaN.
         if error.iter().any(|e| !e.is_finite()) {
-            return Err(Failure::Open(f64::INFINITY));
+            return (q, f64::INFINITY);
         }
         if gap < CLOSED {
             break;
@@ -153,6 +153,12 @@ fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<
             q = trial;
         }
     }
+    (q, gap)
+}
+
+/// Joint positions that close a leg and at which it is regular.
+fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<Vec<f64>, Failure> {
+    let (q, gap) = iterate(leg, start, target);
     if gap.is_nan() || gap >= CLOSED {
         return Err(Failure::Open(gap));
     }
@@ -169,6 +175,21 @@ fn close(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> Result<
         return Err(Failure::Singular(condition));
     }
     Ok(q)
+}
+
+/// Joint positions that close a leg and at which it is regular, wherever the iteration ends.
+pub(super) fn close_anywhere(
+    leg: &Leg,
+    start: &[f64],
+    target: &nalgebra::Isometry3<f64>,
+) -> Option<Vec<f64>> {
+    close(leg, start, target).ok()
+}
+
+/// How near the iteration brings a leg's end to its target (m, rad).
+pub(super) fn nearest(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> f64 {
+    let (q, _) = iterate(leg, start, target);
+    leg.closure_error(&q, target).norm()
 }
 
 /// Joint positions that close a leg, near `start`; `None` if the iteration does not get there or the

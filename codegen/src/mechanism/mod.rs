@@ -8,9 +8,14 @@
 
 pub mod actuation;
 pub mod check;
+mod explain;
 pub mod home;
 pub mod motion;
 pub mod numeric;
+mod reach;
+mod structure;
+#[cfg(test)]
+mod tests;
 
 pub use check::{check, locate};
 pub use home::Home;

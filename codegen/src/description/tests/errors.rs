@@ -231,7 +231,8 @@ fn chains_of_joints() {
         ["7:14 the antecedent comes after the joint; write the joints from the base on"]
     );
     let follow = listed(&text("theta = \"q3\"", "theta = \"-q2\""));
-    let message = "the joints follow each other in a cycle";
+    let message = "the joints follow each other in a cycle; a joint of its own has `q` in place of the \
+                   others' variables";
     assert_eq!(
         follow,
         [format!("7:9 {message}"), format!("10:9 {message}")]

@@ -96,6 +96,8 @@ pub(super) struct Graph {
     is_expensive: Vec<bool>,
     /// Node of each value.
     by_value: ByValue<Signed>,
+    /// What the nodes are looked up by: the first point of their meanings.
+    values: Vec<Element>,
     inverses: Vec<Element>,
     /// The arena's index of each node; new ones have none.
     arena_index: Vec<Option<usize>>,
@@ -113,6 +115,7 @@ impl Graph {
             is_sign: Vec::new(),
             is_expensive: Vec::new(),
             by_value: ByValue::default(),
+            values: Vec::new(),
             inverses: Vec::new(),
             arena_index: Vec::new(),
             changed: Vec::new(),
@@ -172,6 +175,7 @@ impl Graph {
         self.arena_index.push(None);
         self.changed.push(false);
         self.inverses.push(meaning.value().inverse());
+        self.values.push(meaning.value());
         let (key, negative) = canonical(meaning.value());
         let known = self.by_value.get(&key);
         if known.is_none_or(|k| !self.is_live(k.node())) {
@@ -206,6 +210,7 @@ impl Graph {
         }
         self.definitions.pop();
         self.meanings.pop();
+        self.values.pop();
         self.inverses.pop();
         self.scopes.pop();
         self.uses.pop();
@@ -233,7 +238,7 @@ impl Graph {
     }
 
     pub(super) fn value(&self, of: Signed) -> Element {
-        let value = self.meanings[of.node()].value();
+        let value = self.values[of.node()];
         if of.is_negative() { -value } else { value }
     }
 

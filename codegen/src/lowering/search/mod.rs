@@ -15,6 +15,7 @@
 mod cone;
 mod graph;
 mod pairs;
+mod sieve;
 mod singles;
 
 pub use graph::{Overlay, Place, Rewritten};
@@ -75,11 +76,14 @@ pub fn search<'a>(
     } else {
         0
     };
+    let mut known = singles::Known::new(&graph);
     loop {
-        let mut saved = singles::improve(&mut graph);
+        let mut saved = singles::improve(&mut graph, &mut known);
         if rounds > 0 {
             rounds -= 1;
             saved += pairs::improve(&mut graph);
+            // There are new nodes.
+            known = singles::Known::new(&graph);
         }
         if saved == 0 {
             return graph.overlay();
