@@ -1,11 +1,13 @@
 //! What the tests share: descriptions, models, samples, backends and expected values.
 
+pub mod accuracy;
 pub mod agreement;
 pub mod backend;
 pub mod comparison;
 pub mod conversion;
 pub mod expected;
 pub mod library;
+pub mod precise;
 pub mod random;
 pub mod rank;
 pub mod sample;
