@@ -48,15 +48,13 @@ pub fn study(stem: &str, effort: Effort) -> Result<Vec<Errors>, Failure> {
     let mechanism = &derived.mechanism;
     let mut groups = vec![(None, regular(mechanism))];
     let guarded = derived.plain(Family::IdmRedPlatform(Columns::Standard));
-    let joints = derived.plain(Family::Joints);
-    if let (Some(guarded), Some(joints), false) = (guarded, joints, derived.is_tree()) {
-        if !derived.finds_joints(guarded) {
-            groups.extend(towards_singular(
-                mechanism,
-                &guarded.program,
-                &joints.program,
-            ));
-        }
+    let by_rule = guarded.filter(|f| !derived.is_tree() && !derived.finds_joints(f));
+    if let (Some(guarded), Some(joints)) = (by_rule, derived.plain(Family::Joints)) {
+        groups.extend(towards_singular(
+            mechanism,
+            &guarded.program,
+            &joints.program,
+        ));
     }
     let mut precise = Precise::new()?;
     let mut errors = Vec::new();
