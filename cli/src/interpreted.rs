@@ -103,7 +103,9 @@ impl InterpretedRobot {
         };
         match family {
             Family::PoseInClosedForm => true,
-            Family::ClosureError | Family::LegsJacobian => from == From::Joints,
+            Family::ClosureError | Family::LegsJacobian | Family::ClosureActuatorJacobian => {
+                from == From::Joints
+            }
             _ => from == plain && ALL.iter().any(|(_, served)| *served == family),
         }
     }

@@ -1,4 +1,4 @@
-//! Memory does not grow with the log: three times the samples take no more.
+//! Memory does not grow with the log: more samples take hardly more.
 //!
 //! The test is alone in its file, and so in its process, whose largest resident size it asks for.
 
@@ -57,7 +57,8 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) {
     let log = read_csv(&path, &Mapping::for_robot(&robot.info()), false).expect("a log");
     assert!(!log.in_memory());
     let settings = Settings {
-        decimation: 100,
+        // Few equations, so that what is kept of them to judge their residuals is small beside the log.
+        decimation: 400,
         ..settings(robot)
     };
     let told = Cell::new(0);
@@ -83,7 +84,7 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) {
 }
 
 #[test]
-fn three_times_the_samples_take_no_more_memory() {
+fn more_samples_take_hardly_more_memory() {
     if peak().is_none() {
         println!("skipped: this system does not tell the memory of a process");
         return;
@@ -95,11 +96,13 @@ fn three_times_the_samples_take_no_more_memory() {
     experiment.runs.retain(|run| run.name == "unloaded 2");
     let record = records(&robot, &experiment).remove(0);
     let folder = tempfile::tempdir().expect("a folder");
-    identified(&robot, folder.path(), &record, 28);
+    // The first time, threads and the allocator take what they keep.
+    identified(&robot, folder.path(), &record, 27);
+    identified(&robot, folder.path(), &record, 27);
     let short = peak().expect("a size");
-    identified(&robot, folder.path(), &record, 84);
+    identified(&robot, folder.path(), &record, 67);
     let long = peak().expect("a size");
-    // The numbers of the additional samples alone would take 17 MB.
+    // The numbers of the additional samples alone would take 12.8 MB.
     println!("largest resident size: {short:.1} MB, then {long:.1} MB");
-    assert!(long < short + 6.0, "{short} MB, then {long} MB");
+    assert!(long < short + 5.0, "{short} MB, then {long} MB");
 }

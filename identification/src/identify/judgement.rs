@@ -262,17 +262,27 @@ fn partition(
             thresholds.partition_condition
         )
     };
-    let mut others = estimates.iter().map(|(_, one)| one);
-    let case_1 = others.find(|one| one.model == "platform" && one.stage == Stage::Base);
-    if let Some(case_1) =
-        case_1.filter(|one| one.relative_error_percent > base.relative_error_percent)
-    {
+    if let Some((case_1, case_2)) = lower_error(estimates) {
         let _ = write!(
             text,
             "; that its relative error of {} % is lower than the {} % of case 1 does not speak for it: near the singularity a few samples outweigh all others, and they are fitted first",
-            significant(base.relative_error_percent, 3),
-            significant(case_1.relative_error_percent, 3)
+            significant(case_2, 3),
+            significant(case_1, 3)
         );
     }
     Some((false, text))
+}
+
+/// The relative errors (percent) of both cases where that of case 2 is lower: of the essential
+/// parameters, else of all.
+fn lower_error(estimates: &[(usize, Estimate)]) -> Option<(f64, f64)> {
+    let error = |model: &str, stage: Stage| {
+        let mut all = estimates.iter().map(|(_, one)| one);
+        all.find(|one| one.model == model && one.stage == stage)
+            .map(|one| one.relative_error_percent)
+    };
+    [Stage::Essential, Stage::Base]
+        .into_iter()
+        .filter_map(|stage| Some((error("platform", stage)?, error("actuators", stage)?)))
+        .find(|(case_1, case_2)| case_2 < case_1)
 }

@@ -135,7 +135,7 @@ impl Chart {
         let mut svg = opening(WIDTH, HEIGHT, &self.title, &self.description);
         svg.push_str(&self.axes(&x, &y));
         for rule in &self.rules {
-            svg.push_str(&drawn_rule(rule, &y));
+            svg.push_str(&drawn_rule(rule, &self.lines, &y));
         }
         for line in &self.lines {
             svg.push_str(&drawn_line(line, &x, &y));
@@ -200,17 +200,29 @@ pub(super) fn opening(width: f64, height: f64, title: &str, description: &str) -
     )
 }
 
-/// A threshold with its name.
-fn drawn_rule(rule: &Rule, y: &Scale) -> String {
+/// A threshold with its name, which stands at the end where the lines are farther from it.
+fn drawn_rule(rule: &Rule, lines: &[Line], y: &Scale) -> String {
     let [left, right, ..] = FRAME;
     let Some(at) = y.at(rule.value) else {
         return String::new();
     };
+    let nearest = |end: fn(&Line) -> Option<&(f64, f64)>| {
+        let heights = lines.iter().filter_map(|line| y.at(end(line)?.1));
+        heights
+            .map(|height| (height - at).abs())
+            .fold(f64::INFINITY, f64::min)
+    };
+    let is_left = nearest(|line| line.points.first()) > nearest(|line| line.points.last());
+    let (place, anchor) = if is_left {
+        (left + 2.0, "start")
+    } else {
+        (right - 2.0, "end")
+    };
     format!(
-        "<path class=\"rule\" d=\"M{} {at:.1}H{}\"/><text class=\"tick rule-name\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+        "<path class=\"rule\" d=\"M{} {at:.1}H{}\"/><text class=\"tick rule-name\" x=\"{}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
         short(left),
         short(right),
-        short(right - 2.0),
+        short(place),
         at - 4.0,
         escape(&rule.label)
     )
