@@ -109,16 +109,16 @@ impl<'a, T: Turn> Read<'a, T> {
         // Squares may reach into the next row, but not beyond the last one.
         let reach = (SIDE - 1) * width + SIDE;
         let mut turned = 0;
-        for group in 0..self.count / SIDE {
+        while turned + SIDE <= self.count {
             let Some(rows) = values.get(turned * width..turned * width + reach) else {
                 break;
             };
             let row = |k: usize| *rows[k * width..].first_chunk().unwrap_or(&[0.0; SIDE]);
             let (a, b, c, d) = self.turn.turn(row(0), row(1), row(2), row(3));
-            store(&targets[0][group], a);
-            store(&targets[1][group], b);
-            store(&targets[2][group], c);
-            store(&targets[3][group], d);
+            store(&targets[0][turned / SIDE], a);
+            store(&targets[1][turned / SIDE], b);
+            store(&targets[2][turned / SIDE], c);
+            store(&targets[3][turned / SIDE], d);
             turned += SIDE;
         }
         for load in loads {

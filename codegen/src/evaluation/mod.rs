@@ -213,7 +213,7 @@ impl Condition {
 pub(crate) fn signed(a: f64, b: f64) -> f64 {
     // On bits, which vectors of all processors have operations for.
     let sign = b.to_bits() & (-0.0_f64).to_bits();
-    if b > 0.0 || b < 0.0 {
+    if b.abs() > 0.0 {
         f64::from_bits(a.to_bits() ^ sign)
     } else {
         0.0
