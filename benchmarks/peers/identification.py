@@ -15,7 +15,7 @@ import casadi
 import numpy as np
 from scipy import signal
 
-from . import ours
+from . import ours, report
 from .casadi_peer import Casadi
 from .description import load
 from .robot import columns
@@ -165,7 +165,7 @@ def log(function):
 
 
 def own(function, path, core, result):
-    """overact's times, stage by stage, and its R factors."""
+    """overact's nanoseconds of the processor per sample, and its R factors."""
     settings = [FREQUENCY, ORDER, CUTOFF, DECIMATION, *function.columns]
     command = ["taskset", "-c", str(core), ours.ROOT / "target/release/overact-throughput", function.path, path]
     command += [",".join(map(str, settings)), "3", result]
@@ -173,9 +173,8 @@ def own(function, path, core, result):
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr.strip())
-    times = dict(line.split() for line in done.stdout.splitlines())
     width = len(function.columns) + 1
-    return [float(times[stage]) for stage in [*STAGES, "all"]], np.fromfile(result).reshape(-1, width, width)
+    return float(done.stdout), np.fromfile(result).reshape(-1, width, width)
 
 
 def check(found, expected):
@@ -201,14 +200,14 @@ def measure(core, rounds=7):
     for _ in range(rounds):
         times, factors = pipeline.run()
         theirs.append(times)
-        times, expected = own(function, path, core, BUILD / "states" / "identification.out")
-        mine.append(times)
+        total, expected = own(function, path, core, BUILD / "states" / "identification.out")
+        mine.append(total)
         check(factors, expected)
-    return np.min(mine, axis=0), np.min(theirs, axis=0)
+    return min(mine), np.min(theirs, axis=0)
 
 
 def table(mine, theirs):
-    rows = ["| stage, ns per sample | overact | NumPy and SciPy | ratio |", "| --- | --- | --- | --- |"]
-    for stage, a, b in zip([*STAGES, "all"], mine, theirs, strict=True):
-        rows.append(f"| {stage} | {a:.0f} | {b:.0f} | {a / b:.2f} |")
-    return "\n".join(rows)
+    """NumPy's and SciPy's stages, and the whole of both; overact's stages take turns block by block."""
+    rows = [[stage, "", f"{time:.0f}", ""] for stage, time in zip(STAGES, theirs, strict=False)]
+    rows.append(["all", f"**{mine:.0f}**", f"{theirs[-1]:.0f}", f"{mine / theirs[-1]:.2f}"])
+    return report.table(["ns per sample", "overact", "NumPy and SciPy", "ratio"], rows)

@@ -3,7 +3,7 @@
 //! `overact-throughput DESCRIPTION LOG SETTINGS ROUNDS [RESULT]`: LOG holds rows of a pose and torques as
 //! little-endian doubles; SETTINGS are sampling frequency (Hz), filter's order, filter's cutoff (Hz),
 //! decimation, and the names of the columns, separated by commas. Prints the shortest time of the processor of
-//! all rounds in nanoseconds per sample, stage by stage, and writes the R factors, row-major, to RESULT.
+//! all rounds in nanoseconds per sample, and writes the R factors, row-major, to RESULT.
 
 use nalgebra::DMatrix;
 use overact::{Function, Model};
@@ -16,9 +16,6 @@ use std::{env, fs, process::ExitCode};
 
 /// Samples that are evaluated at once, as in an identification.
 const BLOCK: usize = 512;
-
-/// Names of the stages.
-const STAGES: [&str; 4] = ["filters", "regressor", "decimation", "factor"];
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -63,61 +60,54 @@ impl Work<'_> {
         })
     }
 
-    /// For each line of the model samples x (columns + 1), Y last.
-    fn lines(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, Failure> {
+    /// For each line of the model, the R factor of the decimated equations, which come block by block.
+    fn factors(&self) -> Result<Vec<Factor>, Failure> {
+        let motion = self.motion()?;
         let sizes = self.model.info().sizes;
-        let width = self.picked.len() + 1;
-        let mut lines = vec![Vec::with_capacity(self.samples() * width); sizes.dof];
-        let mut measured = Vec::new();
-        let interval = 1.0 / self.frequency;
-        for first in (0..self.samples()).step_by(BLOCK) {
-            let count = BLOCK.min(self.samples() - first);
-            let pose = &motion.pose[first * sizes.pose..][..count * sizes.pose];
-            let twist = &motion.twist[first * sizes.dof..][..count * sizes.dof];
-            let acceleration = &motion.acceleration[first * sizes.dof..][..count * sizes.dof];
-            let torques = &self.torques[first * sizes.actuators..][..count * sizes.actuators];
-            let states = [pose, twist, acceleration];
-            let mut rows = self.columns.evaluate(
-                self.model,
-                &states,
-                (count, interval),
-                false,
-                (&self.picked, 1),
-            )?;
-            measured.resize(count * sizes.dof, 0.0);
-            self.model
-                .evaluate(Function::ProjectPlatform, &[pose, torques], &mut measured)?;
-            for (line, rows) in rows.iter_mut().enumerate() {
-                let places = rows[width - 1..].iter_mut().step_by(width);
-                let values = measured[line..].iter().step_by(sizes.dof);
-                places.zip(values).for_each(|(place, y)| *place = *y);
-                lines[line].extend_from_slice(rows);
+        let (width, samples) = (self.picked.len() + 1, self.samples());
+        let decimator = Decimator::new(self.decimation)?;
+        let one = |_| decimator.stream(width, samples);
+        let mut streams = (0..sizes.dof).map(one).collect::<Result<Vec<_>, _>>()?;
+        let mut kept = vec![Vec::new(); sizes.dof];
+        for first in (0..samples).step_by(BLOCK) {
+            let rows = self.rows(&motion, first, BLOCK.min(samples - first))?;
+            for ((rows, stream), kept) in rows.iter().zip(&mut streams).zip(&mut kept) {
+                stream.push(rows, kept);
             }
         }
-        Ok(lines)
-    }
-
-    /// One equation in so many samples.
-    fn decimated(&self, lines: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
-        let decimator = Decimator::new(self.decimation)?;
-        let one = |rows: &Vec<f64>| {
-            let mut stream = decimator.stream(self.picked.len() + 1, self.samples())?;
-            let mut kept = Vec::new();
-            stream.push(rows, &mut kept);
-            Ok(kept)
-        };
-        lines.iter().map(one).collect()
-    }
-
-    /// The R factor of each line.
-    fn factors(&self, lines: &[Vec<f64>]) -> Vec<Factor> {
-        let width = self.picked.len() + 1;
-        let one = |rows: &Vec<f64>| {
+        let factor = |rows: &Vec<f64>| {
             let mut factor = Factor::new(width - 1);
             factor.push(&DMatrix::from_row_slice(rows.len() / width, width, rows));
             factor
         };
-        lines.iter().map(one).collect()
+        Ok(kept.iter().map(factor).collect())
+    }
+
+    /// For each line of the model, `count` samples from number `first` on x (columns + 1), Y last.
+    fn rows(&self, motion: &Motion, first: usize, count: usize) -> Result<Vec<Vec<f64>>, Failure> {
+        let sizes = self.model.info().sizes;
+        let part =
+            |values: &'_ [f64], width: usize| values[first * width..][..count * width].to_vec();
+        let pose = part(&motion.pose, sizes.pose);
+        let twist = part(&motion.twist, sizes.dof);
+        let acceleration = part(&motion.acceleration, sizes.dof);
+        let torques = part(&self.torques, sizes.actuators);
+        let states: [&[f64]; 3] = [&pose, &twist, &acceleration];
+        let sampling = (count, 1.0 / self.frequency);
+        let picked = (&self.picked[..], 1);
+        let mut lines = self
+            .columns
+            .evaluate(self.model, &states, sampling, false, picked)?;
+        let mut measured = vec![0.0; count * sizes.dof];
+        self.model
+            .evaluate(Function::ProjectPlatform, &[&pose, &torques], &mut measured)?;
+        let width = self.picked.len() + 1;
+        for (line, rows) in lines.iter_mut().enumerate() {
+            let places = rows[width - 1..].iter_mut().step_by(width);
+            let values = measured[line..].iter().step_by(sizes.dof);
+            places.zip(values).for_each(|(place, y)| *place = *y);
+        }
+        Ok(lines)
     }
 }
 
@@ -180,27 +170,14 @@ fn run() -> Result<(), Failure> {
             .collect(),
         torques: rows.flat_map(|row| &row[sizes.pose..]).copied().collect(),
     };
-    let mut best = [f64::INFINITY; STAGES.len() + 1];
+    let mut best = f64::INFINITY;
     let mut factors = Vec::new();
     for _ in 0..rounds.parse()? {
-        let mut times = vec![processor_time()?];
-        let motion = work.motion()?;
-        times.push(processor_time()?);
-        let lines = work.lines(&motion)?;
-        times.push(processor_time()?);
-        let kept = work.decimated(&lines)?;
-        times.push(processor_time()?);
-        factors = work.factors(&kept);
-        times.push(processor_time()?);
-        let total = times[STAGES.len()] - times[0];
-        let stages = times.windows(2).map(|pair| pair[1] - pair[0]);
-        for (best, time) in best.iter_mut().zip(stages.chain([total])) {
-            *best = best.min(1e9 * time / work.samples() as f64);
-        }
+        let start = processor_time()?;
+        factors = work.factors()?;
+        best = best.min(processor_time()? - start);
     }
-    for (stage, time) in STAGES.iter().chain(&["all"]).zip(best) {
-        println!("{stage} {time:.1}");
-    }
+    println!("{:.1}", 1e9 * best / work.samples() as f64);
     if let Some(path) = rest.first() {
         let numbers = factors
             .iter()
