@@ -1,12 +1,13 @@
 """Builds the peers' models, checks that they agree with overact's, counts and times them, writes the tables."""
 
 import argparse
+import os
 import sys
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import identification, ours, report, timing
+from . import identification, ours, pinocchio_peer, report, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -65,6 +66,7 @@ def main():
     parser.add_argument(
         "--blocks", action="store_true", help="only the evaluation over blocks beside the compiled function"
     )
+    parser.add_argument("--pinocchio", action="store_true", help="only Pinocchio's regressor of serial robots")
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
@@ -75,6 +77,10 @@ def main():
     if arguments.blocks:
         work = WORKS[0]
         print(report.blocks(work, timing.blocks(ours.function(work), arguments.core)))
+        return
+    if arguments.pinocchio:
+        os.sched_setaffinity(0, {arguments.core})
+        print(report.calls(pinocchio_peer.measure_all()))
         return
     results = []
     for work in WORKS:

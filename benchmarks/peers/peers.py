@@ -41,11 +41,12 @@ def models(work, function, robot, sample, expected, candidates=3):
     """The peers' models, all proved to agree: CasADi's in its best forms, with and without `cse`, those of
     SymPy and SymForce, whose `cse` is alike, in the best of these."""
     found = []
-    forms = best(robot, function.inputs, function.columns)[:candidates]
+    homes = function.document["home_joints"]
+    forms = best(robot, function.inputs, function.columns, homes)[:candidates]
     for form in forms:
         for cse in (True, False):
             algebra = Casadi()
-            derived = columns(robot, algebra, function.inputs, function.columns, form)
+            derived = columns(robot, algebra, function.inputs, function.columns, form, homes)
             compiled = algebra.function("peer", function.inputs, derived, cse)
             values = [compiled(*state.values()).full() for state in sample]
             title = "CasADi, cse" if cse else "CasADi"
@@ -54,7 +55,7 @@ def models(work, function, robot, sample, expected, candidates=3):
             found.append(Model(title, str(form), casadi_peer.count(compiled), code))
     for make in (sympy_trees, symforce_trees):
         algebra = make()
-        derived = columns(robot, algebra, function.inputs, function.columns, forms[0])
+        derived = columns(robot, algebra, function.inputs, function.columns, forms[0], homes)
         counted, code = algebra.function(function.inputs, derived)
         check(f"{work.title}, {algebra.name}", run(function, algebra.name, code, sample), expected)
         found.append(Model(algebra.name, str(forms[0]), counted, code))

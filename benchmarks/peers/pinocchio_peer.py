@@ -10,9 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 from . import ours
+from .description import load
 from .peers import check
 from .states import states
-from .works import Work
+from .works import WORKS, Work
 
 SYMBOLS = ["m", "mx", "my", "mz", "xx", "xy", "yy", "xz", "yz", "zz"]
 
@@ -70,3 +71,11 @@ def measure(robot, name):
     regressor = shortest(lambda q, v, a: pin.computeJointTorqueRegressor(model, data, q, v, a), arguments)
     nothing = shortest(lambda q, v, a: pin.neutral, arguments)
     return regressor, nothing
+
+
+def measure_all():
+    """The serial robots among the works: name, nanoseconds of a regressor and of a call."""
+    robots = dict.fromkeys(work.robot for work in WORKS)
+    described = {name: load(ours.description(name)) for name in robots}
+    serial = {name: robot for name, robot in described.items() if robot.motion is None}
+    return [(robot.name, *measure(robot, name)) for name, robot in serial.items()]

@@ -17,6 +17,7 @@ class Work:
 WORKS = [
     Work("DualV, standard columns", "dualv", quoted="607 CasADi, 385 by hand"),
     Work("DualV, base columns", "dualv", "base", quoted="357 by hand"),
+    Work("DualV, base columns from the pose", "dualv", "base", "pose"),
     Work("RX90, base columns", "rx90", "base", quoted="769 best of OpenSYMORO, SymPyBotics, CasADi"),
     Work("PUMA 560, base columns", "puma560", "base", quoted="824, likewise"),
     Work("Stanford arm, base columns", "stanford", "base", quoted="670, likewise"),
