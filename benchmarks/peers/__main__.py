@@ -1,12 +1,13 @@
 """Builds the peers' models, checks that they agree with overact's, counts and times them, writes the tables."""
 
 import argparse
+import os
 import sys
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import ours, report, timing
+from . import identification, ours, pinocchio_peer, report, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -32,13 +33,6 @@ def measure(work, samples):
     return Result(work, function, models(work, function, load(function.path), sample, expected))
 
 
-def outputs(program, path, core, shape):
-    """What a compiled program gives for its states."""
-    dump = path.with_suffix(".out")
-    program.run(path, core, 1, dump)
-    return np.fromfile(dump).reshape(-1, *shape)
-
-
 def time(result, program, core, rounds):
     """Times overact's program and the peers' in turns, after a check that they give the same numbers."""
     function = result.function
@@ -51,11 +45,11 @@ def time(result, program, core, rounds):
     for index, model in enumerate(compiled):
         title = f"{model.peer}: {model.form}"
         programs.append(timing.c_program(title, f"{name}_{index}", model.code, function.inputs, size))
-    expected = outputs(program, path, core, function.shape)
+    expected = timing.outputs(program, path, core, function.shape)
     for other in programs[1:]:
         check(
             f"{result.work.title}, C code of {other.title}",
-            outputs(other, path, core, function.shape),
+            timing.outputs(other, path, core, function.shape),
             expected,
         )
     own, *peers = timing.compare(programs, path, core, rounds)
@@ -66,10 +60,28 @@ def main():
     parser = argparse.ArgumentParser(prog="benchmarks/run", description=__doc__)
     parser.add_argument("--samples", type=int, default=20, help="states at which the results are compared")
     parser.add_argument("--only", help="works whose robot's name holds this text")
+    parser.add_argument(
+        "--identification", action="store_true", help="only the throughput of an identification"
+    )
+    parser.add_argument(
+        "--blocks", action="store_true", help="only the evaluation over blocks beside the compiled function"
+    )
+    parser.add_argument("--pinocchio", action="store_true", help="only Pinocchio's regressor of serial robots")
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
     arguments = parser.parse_args()
+    if arguments.identification:
+        print(identification.table(*identification.measure(arguments.core)))
+        return
+    if arguments.blocks:
+        work = WORKS[0]
+        print(report.blocks(work, timing.blocks(ours.function(work), arguments.core)))
+        return
+    if arguments.pinocchio:
+        os.sched_setaffinity(0, {arguments.core})
+        print(report.calls(pinocchio_peer.measure_all()))
+        return
     results = []
     for work in WORKS:
         if not arguments.only or arguments.only in work.robot:

@@ -56,6 +56,8 @@ class Angles:
         self.algebra = algebra
         self.variables = variables
         self.known = {}
+        #: Pairs of sums of joints that a closure gives, by the joints' names.
+        self.closed = {}
 
     def pair(self, angle):
         """Cosine and sine of a `Linear`; quarter turns cost nothing."""
@@ -72,7 +74,12 @@ class Angles:
         rest = angle.constant - quarters * math.pi / 2
         rest = 0.0 if abs(rest) < 1e-15 else rest
         key = (terms, rest)
-        if key not in self.known:
+        names = tuple(name for name, factor in terms if factor == 1.0)
+        if key not in self.known and names in self.closed:
+            c, s = self.closed[names]
+            cosine, sine = math.cos(rest), math.sin(rest)
+            self.known[key] = (c * cosine - s * sine, s * cosine + c * sine)
+        elif key not in self.known:
             total = scalar(rest)
             for name, factor in terms:
                 total = total + self.variables[name] * factor

@@ -12,6 +12,15 @@ from .count import Count
 ROOT = Path(__file__).resolve().parents[2]
 
 
+#: Where descriptions lie: the library, and robots that only tests use.
+FOLDERS = [ROOT / "robots", ROOT / "tests" / "fixtures"]
+
+
+def description(robot):
+    """The file that describes a robot."""
+    return next(folder / f"{robot}.toml" for folder in FOLDERS if (folder / f"{robot}.toml").exists())
+
+
 def overact(*arguments, stdin=None):
     """The JSON document that a command of the release build prints."""
     binary = ROOT / "target" / "release" / "overact"
@@ -39,7 +48,7 @@ class Function:
 
     @property
     def path(self):
-        return ROOT / "robots" / f"{self.robot}.toml"
+        return description(self.robot)
 
     @property
     def rust_name(self):
@@ -59,7 +68,7 @@ class Function:
 
 
 def inspect(robot):
-    return overact("inspect", ROOT / "robots" / f"{robot}.toml")
+    return overact("inspect", description(robot))
 
 
 def function(work):

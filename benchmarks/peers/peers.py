@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import casadi_peer
+from . import casadi_peer, timing
 from .casadi_peer import Casadi
 from .count import Count
 from .robot import columns
 from .search import best
+from .tree_peer import symforce_trees, sympy_trees
 
 #: Largest difference of results, relative to the largest entry of a row.
 AGREEMENT = 1e-9
@@ -37,16 +38,34 @@ def check(title, found, expected):
 
 
 def models(work, function, robot, sample, expected, candidates=3):
-    """CasADi's models in its best forms, with and without `cse`, all proved to agree."""
+    """The peers' models, all proved to agree: CasADi's in its best forms, with and without `cse`, those of
+    SymPy and SymForce, whose `cse` is alike, in the best of these."""
     found = []
-    for form in best(robot, function.inputs, function.columns)[:candidates]:
+    homes = function.document["home_joints"]
+    forms = best(robot, function.inputs, function.columns, homes)[:candidates]
+    for form in forms:
         for cse in (True, False):
             algebra = Casadi()
-            derived = columns(robot, algebra, function.inputs, function.columns, form)
+            derived = columns(robot, algebra, function.inputs, function.columns, form, homes)
             compiled = algebra.function("peer", function.inputs, derived, cse)
             values = [compiled(*state.values()).full() for state in sample]
             title = "CasADi, cse" if cse else "CasADi"
             check(f"{work.title}, {title}", np.array(values).reshape(expected.shape), expected)
             code = casadi_peer.c_code(compiled)
             found.append(Model(title, str(form), casadi_peer.count(compiled), code))
+    for make in (sympy_trees, symforce_trees):
+        algebra = make()
+        derived = columns(robot, algebra, function.inputs, function.columns, forms[0], homes)
+        counted, code = algebra.function(function.inputs, derived)
+        check(f"{work.title}, {algebra.name}", run(function, algebra.name, code, sample), expected)
+        found.append(Model(algebra.name, str(forms[0]), counted, code))
     return found
+
+
+def run(function, title, code, sample):
+    """What C code gives for states."""
+    name = f"{function.robot}_{function.rust_name}_{title.partition(',')[0].lower()}"
+    path = timing.BUILD / "states" / f"{name}.bin"
+    timing.write_states(path, sample)
+    program = timing.c_program(title, name, code, function.inputs, int(np.prod(function.shape)))
+    return timing.outputs(program, path, 0, function.shape)

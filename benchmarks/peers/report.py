@@ -40,3 +40,16 @@ def times(results):
             cells.append(f"{min(of):.0f}" if of else "–")
         rows.append([*cells, f"{own / min(t for _, t in peers):.2f}"])
     return table(["work, ns per call", "overact", *tools, "overact / fastest peer"], rows)
+
+
+def blocks(work, times):
+    """Nanoseconds per sample of a compiled function and of blocks, and their ratio."""
+    names = ["compiled function", "blocks as they lie", "blocks to rows"]
+    lines = [[n, f"{t:.0f}", f"{t / times[0]:.2f}"] for n, t in zip(names, times, strict=True)]
+    return table([f"{work.title}, ns per sample", "time", "ratio"], lines)
+
+
+def calls(times):
+    """Nanoseconds of Pinocchio's regressors, called from Python."""
+    lines = [[name, f"{regressor:.0f}", f"{nothing:.0f}"] for name, regressor, nothing in times]
+    return table(["10 columns a joint, ns", "Pinocchio, from Python", "of which a call"], lines)

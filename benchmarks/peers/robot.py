@@ -11,6 +11,7 @@ from .algebra import (
     transpose,
     vector,
 )
+from .closure import close
 from .model import Angles, LegModel
 from .platform import Platform
 
@@ -22,13 +23,14 @@ def symbols(algebra, inputs):
     return {name: [algebra.symbol(f"{name}[{i}]") for i in range(length)] for name, length in inputs}
 
 
-def columns(robot, algebra, inputs, names, form):
-    """The model's columns `names`, each a list of `dof` scalars."""
+def columns(robot, algebra, inputs, names, form, homes=()):
+    """The model's columns `names`, each a list of `dof` scalars. `homes` are the joints at home, which tell
+    the working modes where the joints are no inputs."""
     values = symbols(algebra, inputs)
     wanted = set(names)
     found = serial(robot, algebra, values, wanted, form) if robot.motion is None else {}
     if robot.motion is not None:
-        found = parallel(robot, algebra, values, wanted, form)
+        found = parallel(robot, algebra, values, wanted, form, homes)
     return [found[name] for name in names]
 
 
@@ -52,7 +54,7 @@ def serial(robot, algebra, values, wanted, form):
     return model.columns(inverse, rates, accelerations, algebra, own_name(wanted))
 
 
-def parallel(robot, algebra, values, wanted, form):
+def parallel(robot, algebra, values, wanted, form, homes):
     """Inputs projected on the platform."""
     angles = Angles(algebra, {})
     platform = Platform(robot, algebra, angles, values)
@@ -60,8 +62,11 @@ def parallel(robot, algebra, values, wanted, form):
     start = 0
     for leg in robot.legs:
         moving = [joint for joint in leg.joints if joint.kind != "fixed"]
-        angles.variables.update({j.name: values["joints"][start + k] for k, j in enumerate(moving)})
+        if "joints" in values:
+            angles.variables.update({j.name: values["joints"][start + k] for k, j in enumerate(moving)})
         angles.known = {key: pair for key, pair in angles.known.items() if key[0][0][0] == "phi"}
+        if "joints" not in values:
+            close(angles, algebra, platform, leg, values["pose"], homes[start : start + len(moving)])
         start += len(moving)
         found |= leg_columns(robot, algebra, angles, platform, leg, wanted, form)
     return found

@@ -24,14 +24,14 @@ def forms(robot):
 PAIR = 15
 
 
-def best(robot, inputs, names):
+def best(robot, inputs, names, homes=()):
     """The form with the fewest operations of CasADi's function after `cse`, then the others by
     operations and pairs of sine and cosine."""
     found = []
     for index, form in enumerate(forms(robot)):
         algebra = Casadi()
         try:
-            derived = columns(robot, algebra, inputs, names, form)
+            derived = columns(robot, algebra, inputs, names, form, homes)
         except NotImplementedError:
             # The closure is not square in this frame: another one serves.
             continue

@@ -6,13 +6,15 @@ take turns, so that whatever else the machine does falls on all of them.
 """
 
 import os
+import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from .ours import ROOT
+from .ours import ROOT, description
+from .states import states
 
 BUILD = ROOT / "target" / "benchmarks"
 TEMPLATES = Path(__file__).parent / "templates"
@@ -68,43 +70,72 @@ def c_program(title, name, source, inputs, outputs):
     return Program(title, binary)
 
 
-def rust_programs(functions):
-    """Compiles overact's functions in a crate of their own, in cargo's default release profile."""
+def rust_crate(functions):
+    """A crate with the modules that hold overact's functions, in cargo's default release profile."""
     folder = BUILD / "ours"
-    manifest = (TEMPLATES / "Cargo.toml").read_text().replace("@ROOT@", str(ROOT))
     robots = sorted({function.robot for function in functions})
     for robot in robots:
-        command = [ROOT / "target/release/overact", "generate", ROOT / "robots" / f"{robot}.toml"]
+        command = [ROOT / "target/release/overact", "generate", description(robot)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         write(folder / "src" / f"{robot}.rs", done.stdout)
     modules = "".join(f"pub mod {robot};\n" for robot in robots)
     write(folder / "src" / "lib.rs", (TEMPLATES / "lib.rs").read_text() + modules)
+    write(folder / "Cargo.toml", (TEMPLATES / "Cargo.toml").read_text().replace("@ROOT@", str(ROOT)))
+    return folder
+
+
+def rust_programs(functions, template="main.rs", dependencies=()):
+    """Compiles a program for each of overact's functions."""
+    folder = rust_crate(functions)
+    shutil.rmtree(folder / "src" / "bin", ignore_errors=True)
     programs = []
     for function in functions:
-        name = f"{function.robot}_{function.rust_name}"
-        write(folder / "src" / "bin" / f"{name}.rs", rust_main(function))
+        name = f"{function.robot}_{function.rust_name}_{template.removesuffix('.rs')}"
+        write(folder / "src" / "bin" / f"{name}.rs", rust_main(function, template))
         programs.append(Program("overact", folder / "target" / "release" / name))
-    write(folder / "Cargo.toml", manifest)
+    if dependencies:
+        with open(folder / "Cargo.toml", "a") as manifest:
+            manifest.writelines(f'[dependencies.{d}]\npath = "{ROOT / p}"\n' for d, p in dependencies)
     environment = {k: v for k, v in os.environ.items() if k not in ("RUSTFLAGS", "CARGO_TARGET_DIR")}
     subprocess.run(["cargo", "build", "--quiet", "--release"], cwd=folder, env=environment, check=True)
     return programs
 
 
-def rust_main(function):
+def rust_main(function, template):
     """The program that times one of overact's functions."""
     starts = np.cumsum([0] + [length for _, length in function.inputs])
     spans = [f"values[{a}..{b}].try_into()?" for a, b in zip(starts, starts[1:], strict=False)]
-    text = (TEMPLATES / "main.rs").read_text()
+    text = (TEMPLATES / template).read_text()
     for key, value in {
         "MODULE": function.robot,
         "TYPES": ", ".join(f"[f64; {length}]" for _, length in function.inputs),
         "READ": ", ".join(spans),
+        "LENGTHS": ", ".join(str(length) for _, length in function.inputs),
         "TOTAL": str(starts[-1]),
         "CALL": f"{function.robot}::{function.document['robot']}::{function.rust_name}",
         "ARGUMENTS": ", ".join(f"&s.{i}" for i in range(len(function.inputs))),
+        "DESCRIPTION": str(function.path),
+        "COLUMNS": function.kind.capitalize(),
     }.items():
         text = text.replace(f"@{key}@", value)
     return text
+
+
+def blocks(function, core=0, rounds=2000):
+    """Nanoseconds per sample of overact's function, of its program over blocks, and of the same with rows."""
+    (program,) = rust_programs([function], "blocks.rs", [("overact-codegen", "codegen")])
+    path = BUILD / "states" / f"{function.robot}_blocks.bin"
+    write_states(path, states(function, STATES, seed=2))
+    command = ["taskset", "-c", str(core), program.path, path, str(rounds)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return [float(word) for word in done.stdout.split()]
+
+
+def outputs(program, path, core, shape):
+    """What a compiled program gives for its states."""
+    dump = path.with_suffix(".out")
+    program.run(path, core, 1, dump)
+    return np.fromfile(dump).reshape(-1, *shape)
 
 
 def compare(programs, states, core=0, rounds=15):

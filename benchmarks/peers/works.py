@@ -17,7 +17,9 @@ class Work:
 WORKS = [
     Work("DualV, standard columns", "dualv", quoted="607 CasADi, 385 by hand"),
     Work("DualV, base columns", "dualv", "base", quoted="357 by hand"),
+    Work("DualV, base columns from the pose", "dualv", "base", "pose"),
     Work("RX90, base columns", "rx90", "base", quoted="769 best of OpenSYMORO, SymPyBotics, CasADi"),
+    Work("PUMA 560, base columns", "puma560", "base", quoted="824, likewise"),
     Work("Stanford arm, base columns", "stanford", "base", quoted="670, likewise"),
     Work("KUKA LWR, base columns", "kuka_lwr", "base", quoted="1175, likewise"),
     Work("Five-bar, standard columns", "five_bar", quoted="199 CasADi, 181 by hand"),

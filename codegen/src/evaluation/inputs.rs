@@ -105,21 +105,20 @@ impl<'a, T: Turn> Read<'a, T> {
             let load = loads.iter().find(|load| load.index == index + side);
             load.map_or(&unused, |load| &self.slots[load.slot])
         });
-        let [first, second, third, fourth] = targets.map(|lanes| lanes.as_chunks::<SIDE>().0);
-        let groups = first.iter().zip(second).zip(third).zip(fourth);
+        let targets = targets.map(|lanes| lanes.as_chunks::<SIDE>().0);
         // Squares may reach into the next row, but not beyond the last one.
         let reach = (SIDE - 1) * width + SIDE;
         let mut turned = 0;
-        for (((first, second), third), fourth) in groups.take(self.count / SIDE) {
+        while turned + SIDE <= self.count {
             let Some(rows) = values.get(turned * width..turned * width + reach) else {
                 break;
             };
             let row = |k: usize| *rows[k * width..].first_chunk().unwrap_or(&[0.0; SIDE]);
             let (a, b, c, d) = self.turn.turn(row(0), row(1), row(2), row(3));
-            store(first, a);
-            store(second, b);
-            store(third, c);
-            store(fourth, d);
+            store(&targets[0][turned / SIDE], a);
+            store(&targets[1][turned / SIDE], b);
+            store(&targets[2][turned / SIDE], c);
+            store(&targets[3][turned / SIDE], d);
             turned += SIDE;
         }
         for load in loads {

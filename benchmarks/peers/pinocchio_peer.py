@@ -1,0 +1,81 @@
+"""Pinocchio's joint torque regressor of serial robots: agreement, and its time.
+
+It has all ten inertial columns of every body, in the same order of axes as here, and no friction. It is called
+from Python, as its users call it; the time of a call that does nothing is measured beside it.
+"""
+
+import time
+
+import numpy as np
+import pinocchio as pin
+
+from . import ours
+from .description import load
+from .peers import check
+from .states import states
+from .works import WORKS, Work
+
+SYMBOLS = ["m", "mx", "my", "mz", "xx", "xy", "yy", "xz", "yz", "zz"]
+
+
+def turn(axis, angle):
+    return pin.SE3(pin.AngleAxis(angle, np.array(axis)).toRotationMatrix(), np.zeros(3))
+
+
+def shift(vector):
+    return pin.SE3(np.eye(3), np.array(vector))
+
+
+def model_of(robot):
+    """A chain of modified Denavit-Hartenberg frames."""
+    (leg,) = robot.legs
+    model, parent = pin.Model(), 0
+    model.gravity.linear = robot.gravity
+    for joint in leg.joints:
+        (motion,) = [e for e in (joint.theta, joint.r) if e.terms]
+        if list(motion.terms.values()) != [1.0]:
+            raise NotImplementedError("a joint that turns against its variable")
+        placement = turn([0.0, 0.0, 1.0], joint.gamma) * shift([0.0, 0.0, joint.b])
+        placement = placement * turn([1.0, 0.0, 0.0], joint.alpha) * shift([joint.d, 0.0, 0.0])
+        placement = placement * turn([0.0, 0.0, 1.0], joint.theta.constant)
+        placement = placement * shift([0.0, 0.0, joint.r.constant])
+        kind = pin.JointModelRZ() if joint.kind == "revolute" else pin.JointModelPZ()
+        parent = model.addJoint(parent, kind, placement, joint.name)
+    return model
+
+
+def shortest(call, arguments, batches=200):
+    """Nanoseconds of a call."""
+    best = float("inf")
+    for _ in range(batches):
+        start = time.perf_counter()
+        for given in arguments:
+            call(*given)
+        best = min(best, time.perf_counter() - start)
+    return 1e9 * best / len(arguments)
+
+
+def measure(robot, name):
+    """Nanoseconds of a regressor, and of a call without work, once the columns agree with overact's."""
+    function = ours.function(Work(name, name))
+    sample = states(function, 50)
+    model = model_of(robot)
+    data = model.createData()
+    arguments = [tuple(np.array(v) for v in state.values()) for state in sample]
+    found = np.array([pin.computeJointTorqueRegressor(model, data, *given).copy() for given in arguments])
+    bodies = [joint.name for joint in robot.legs[0].joints]
+    places = {f"{s}_{body}": 10 * k + i for k, body in enumerate(bodies) for i, s in enumerate(SYMBOLS)}
+    shared = [name for name in function.columns if name in places]
+    expected = function.evaluate(sample)[:, :, [function.columns.index(name) for name in shared]]
+    check(f"{name}, Pinocchio", found[:, :, [places[name] for name in shared]], expected)
+    regressor = shortest(lambda q, v, a: pin.computeJointTorqueRegressor(model, data, q, v, a), arguments)
+    nothing = shortest(lambda q, v, a: pin.neutral, arguments)
+    return regressor, nothing
+
+
+def measure_all():
+    """The serial robots among the works: name, nanoseconds of a regressor and of a call."""
+    robots = dict.fromkeys(work.robot for work in WORKS)
+    described = {name: load(ours.description(name)) for name in robots}
+    serial = {name: robot for name, robot in described.items() if robot.motion is None}
+    return [(robot.name, *measure(robot, name)) for name, robot in serial.items()]
