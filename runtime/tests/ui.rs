@@ -2,7 +2,8 @@
 //!
 //! The macro looks for descriptions beside the user's manifest. The manifest here is the one that
 //! `trybuild` writes into the target folder, so the descriptions are copied there first. `trybuild` builds
-//! all that the tests' package depends on once more, so they stand here, where that is little.
+//! all that the tests' package depends on once more, so they stand here, where that is the macro and
+//! little else.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
