@@ -1,24 +1,26 @@
 //! What the macro says of wrong uses and wrong descriptions, and that a right one compiles.
 //!
 //! The macro looks for descriptions beside the user's manifest. The manifest here is the one that
-//! `trybuild` writes into the target folder, so the descriptions are copied there first.
+//! `trybuild` writes into the target folder, so the descriptions are copied there first. `trybuild` builds
+//! all that the tests' package depends on once more, so they stand here, where that is the macro and
+//! little else.
 
-use overact_tests::support::Failure;
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// Where `trybuild` puts its crate: in the target folder, which is the third above a test's program
 /// (`debug/deps/ui-...`).
-fn user_crate() -> Result<PathBuf, Failure> {
+fn user_crate() -> Result<PathBuf, Box<dyn Error>> {
     let program = env::current_exe()?;
     let target = program.ancestors().nth(3).ok_or("no target folder")?;
     Ok(target.join("tests/trybuild").join(env!("CARGO_PKG_NAME")))
 }
 
-fn copy_descriptions() -> Result<(), Failure> {
+fn copy_descriptions() -> Result<(), Box<dyn Error>> {
     let to = user_crate()?.join("descriptions");
     fs::create_dir_all(&to)?;
-    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("ui/descriptions");
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ui/descriptions");
     for entry in fs::read_dir(from)? {
         let entry = entry?;
         fs::copy(entry.path(), to.join(entry.file_name()))?;
@@ -27,16 +29,16 @@ fn copy_descriptions() -> Result<(), Failure> {
 }
 
 #[test]
-fn wrong_uses_are_explained_and_a_right_one_compiles() -> Result<(), Failure> {
+fn wrong_uses_are_explained_and_a_right_one_compiles() -> Result<(), Box<dyn Error>> {
     copy_descriptions()?;
     let cases = trybuild::TestCases::new();
-    for entry in fs::read_dir("ui")? {
+    for entry in fs::read_dir("tests/ui")? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default();
         if path.extension().is_some_and(|e| e == "rs") && name != "pass.rs" {
             cases.compile_fail(path);
         }
     }
-    cases.pass("ui/pass.rs");
+    cases.pass("tests/ui/pass.rs");
     Ok(())
 }
