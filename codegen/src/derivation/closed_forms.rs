@@ -152,6 +152,13 @@ fn poses_by_rule_are_those_that_the_actuators_came_from() {
         with_closed_form.push(mechanism.name);
     }
     // The robots whose legs hold a platform point at a fixed distance from what an actuator moves.
-    let expected = ["Delta", "Delta4", "DualV", "FiveBar", "ThreeLegPoint"];
+    let expected = [
+        "Delta",
+        "Delta4",
+        "DualV",
+        "FiveBar",
+        "Orthoglide",
+        "ThreeLegPoint",
+    ];
     assert_eq!(with_closed_form, expected);
 }

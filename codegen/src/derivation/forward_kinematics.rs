@@ -12,10 +12,10 @@
 //! The sign of t is the assembly mode of the home configuration. A `point` or `translation` platform
 //! is solved by one meeting; a `planar` one by two, where two pairs of legs hold it at two points.
 
-use super::configuration::{Configuration, From, angle_near};
+use super::configuration::{Configuration, From, Unknown, angle_near};
 use super::inverse_kinematics::{Reach, Task, advance, at_zero, equations};
 use super::platform::PlatformPose;
-use crate::cas::{Arena, Expr, Matrix3, Number, Ratio, SymbolId, Vector3};
+use crate::cas::{Arena, Expr, Matrix3, Number, Ratio, Substitution, SymbolId, Vector3};
 use crate::mechanism::numeric::platform_frame;
 use crate::mechanism::{End, JointKind, Mechanism, Motion, TwistCoordinate};
 
@@ -114,8 +114,11 @@ impl<'a> Work<'a> {
     fn sphere(self, leg: usize, task: Task<'a, 'a>) -> Option<Sphere<'a>> {
         let mut configuration = self.measured(leg);
         loop {
-            let equations = equations(task, &configuration.with_unknowns())?;
-            let found = equations.into_iter().find_map(|e| self.as_sphere(leg, e));
+            let scratch = configuration.with_unknowns();
+            let equations = equations(task, &scratch)?.into_iter();
+            let unknowns = scratch.unknowns();
+            let mut without_turns = equations.map(|e| self.without_turns(e, &unknowns));
+            let found = without_turns.find_map(|e| self.as_sphere(leg, e));
             if found.is_some() {
                 return found;
             }
@@ -140,6 +143,26 @@ impl<'a> Work<'a> {
             }
         }
         configuration
+    }
+
+    /// The equation without those unknown turns that it does not depend on: one that holds c² + s² only
+    /// has no derivative along the circle.
+    fn without_turns(self, equation: Expr<'a>, unknowns: &[Unknown]) -> Expr<'a> {
+        let turns = unknowns.iter().filter(|u| matches!(u, Unknown::Turn(_)));
+        turns.fold(equation, |equation, turn| {
+            let (cosine, sine) = turn.unit(self.arena);
+            let symbols: Vec<SymbolId> = [cosine, sine].iter().flat_map(|e| e.symbols()).collect();
+            let [c, s] = symbols[..] else {
+                return equation;
+            };
+            let along = equation.derivative(s) * cosine - equation.derivative(c) * sine;
+            if !along.is_zero() {
+                return equation;
+            }
+            let (one, zero) = (self.arena.one(), self.arena.zero());
+            let at = Substitution::new(self.arena).value(c, one).value(s, zero);
+            at.apply(equation)
+        })
     }
 
     /// The equation as a sphere; `None` if it is of another form.

@@ -1,0 +1,37 @@
+//! Fewer operations do not mean fewer digits: searched forms against arithmetic of 128 bits, beside the
+//! forms as derived. `docs/accuracy.md` has the numbers of the whole library.
+
+use overact_codegen::Effort;
+use overact_tests::support::{Failure, accuracy};
+
+/// Digits that a form may lose to the other: states are few, and rounding is a matter of luck.
+const FACTOR: f64 = 10.0;
+/// Relative errors below this are rounding.
+const ROUNDING: f64 = 1e-12;
+/// Nearer to a singular configuration than this fraction of the way there, a searched form may lose
+/// two digits more.
+const NEAR: f64 = 5e-4;
+
+#[test]
+fn searched_forms_keep_the_digits_of_derived_ones() -> Result<(), Failure> {
+    let robots = [
+        ("dualv", Effort::Thorough),
+        ("five_bar", Effort::Thorough),
+        ("delta", Effort::Quick),
+        ("planar_3rrr", Effort::Quick),
+        ("spherical_4rrr", Effort::Quick),
+        ("rx90", Effort::Quick),
+    ];
+    for (stem, effort) in robots {
+        let rows = accuracy::study(stem, effort)?;
+        assert!(rows.len() >= 2, "{stem}: both sets of columns are studied");
+        for row in rows {
+            let near = row.distance.is_some_and(|d| d < NEAR);
+            let allowed = ROUNDING + row.derived * FACTOR * if near { 100.0 } else { 1.0 };
+            assert!(row.searched <= allowed, "{stem}: {row:?}");
+            // Far from singular configurations nearly all digits are right.
+            assert!(row.distance.is_some() || row.searched < 1e-10, "{stem}: {row:?}");
+        }
+    }
+    Ok(())
+}
