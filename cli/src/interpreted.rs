@@ -25,6 +25,17 @@ use std::sync::{Mutex, PoisonError};
 /// before it runs.
 const INPUTS: usize = 5;
 
+/// Where an input of a program comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Given {
+    /// From the function's input at this place.
+    At(usize),
+    /// From Newton's method, which finds the joints first.
+    Joints,
+    /// From nowhere: the program does not read it.
+    Unread,
+}
+
 /// A robot that is interpreted.
 #[derive(Debug)]
 pub struct InterpretedRobot {
@@ -40,9 +51,8 @@ struct Served {
     function: Function,
     /// Index among the model's functions.
     index: usize,
-    /// For each input of the program its place among the function's inputs; `None` for joints that
-    /// Newton's method has to find first.
-    inputs: Vec<Option<usize>>,
+    /// Where each input of the program comes from.
+    inputs: Vec<Given>,
     workspaces: Pool<Workspace>,
 }
 
@@ -125,18 +135,26 @@ impl InterpretedRobot {
             .iter()
             .position(|f| std::ptr::eq(f, wanted))?;
         let finds_joints = self.model.finds_joints(wanted);
-        let place = |array: &overact_codegen::lowering::Array| {
+        let place = |(array, used): (&overact_codegen::lowering::Array, bool)| {
             if finds_joints && array.name == "joints" {
-                return Some(None);
+                return Some(Given::Joints);
+            }
+            if !used {
+                return Some(Given::Unread);
             }
             let joints = array.name == "joints" && function.inputs().contains(&Input::Joints);
             let input = match joints {
                 true => Input::Joints,
                 false => input_of(&array.name)?,
             };
-            function.inputs().iter().position(|i| *i == input).map(Some)
+            let mut known = function.inputs().iter();
+            known.position(|i| *i == input).map(Given::At)
         };
-        let inputs: Option<Vec<Option<usize>>> = wanted.program.inputs.iter().map(place).collect();
+        let arrays = wanted.program.inputs.iter();
+        let inputs: Option<Vec<Given>> = arrays
+            .zip(wanted.program.used_inputs())
+            .map(place)
+            .collect();
         let (rows, columns) = function.shape(&self.names.sizes);
         // A program that does not fit the trait is not offered rather than misread.
         let inputs = inputs
@@ -332,7 +350,7 @@ impl Model for InterpretedRobot {
             values: &[],
             shared: false,
         }; INPUTS];
-        let found = match served.inputs.contains(&None) {
+        let found = match served.inputs.contains(&Given::Joints) {
             true => self.find_joints(inputs[0])?,
             false => Vec::new(),
         };
@@ -342,12 +360,16 @@ impl Model for InterpretedRobot {
         }
         for (slot, &at) in given.iter_mut().zip(&served.inputs) {
             *slot = match at {
-                Some(at) => Rows {
+                Given::At(at) => Rows {
                     values: inputs[at],
                     shared: function.inputs()[at] == Input::Parameters,
                 },
-                None => Rows {
+                Given::Joints => Rows {
                     values: &found,
+                    shared: false,
+                },
+                Given::Unread => Rows {
+                    values: &[],
                     shared: false,
                 },
             };

@@ -3,7 +3,10 @@
 mod common;
 
 use overact::{Body, Error, Function, Model, Symbol};
-use overact_cli::{InterpretedRobot, load::load};
+use overact_cli::{
+    InterpretedRobot,
+    load::{load, load_to_serve},
+};
 use std::path::Path;
 
 fn robot(name: &str) -> InterpretedRobot {
@@ -28,6 +31,27 @@ fn evaluate(
         .evaluate(function, inputs, &mut output)
         .expect("a value");
     output
+}
+
+/// B_p of the DualV is diagonal, -d2 d3 sin(q2) of each leg; also where only what is served is compiled.
+#[test]
+fn the_closure_is_served_from_joints() {
+    let file = common::robot("dualv.toml");
+    let loaded = load_to_serve(Path::new(&file)).map_err(|failure| failure.render(false));
+    let lean = InterpretedRobot::new(loaded.expect("a robot").model);
+    for robot in [robot("dualv.toml"), lean] {
+        let joints = evaluate(&robot, Function::Joints, &[&POSE], 12);
+        let closure = evaluate(&robot, Function::ClosureActuatorJacobian, &[&joints], 16);
+        for (at, value) in closure.iter().enumerate() {
+            let (row, column) = (at / 4, at % 4);
+            let expected = if row == column {
+                -0.28 * 0.28 * joints[3 * row + 1].sin()
+            } else {
+                0.0
+            };
+            assert!((value - expected).abs() < 1e-14, "{value} {expected}");
+        }
+    }
 }
 
 /// The pose at a time near zero, on a motion with these rates.

@@ -2,7 +2,7 @@
 
 use super::expression::Body;
 use crate::derivation::{Family, From};
-use crate::lowering::{Array, Program};
+use crate::lowering::Array;
 use crate::model::{Function, RobotModel};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -82,7 +82,7 @@ pub fn is_fallible(model: &RobotModel, function: &Function) -> bool {
 
 /// Whether the function's program, or the search of its joints, uses the pose.
 fn needs_pose(model: &RobotModel, function: &Function) -> bool {
-    let used = used_inputs(&function.program);
+    let used = function.program.used_inputs();
     let pose = function
         .program
         .inputs
@@ -94,7 +94,7 @@ fn needs_pose(model: &RobotModel, function: &Function) -> bool {
 /// Whether the function's program uses joints that Newton's method has to find first.
 fn needs_joints(model: &RobotModel, function: &Function) -> bool {
     let inputs = &function.program.inputs;
-    let used = used_inputs(&function.program);
+    let used = function.program.used_inputs();
     let joints = inputs
         .iter()
         .zip(used)
@@ -120,7 +120,7 @@ pub fn array_type(array: &Array) -> TokenStream {
 }
 
 fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
-    let used = used_inputs(&function.program);
+    let used = function.program.used_inputs();
     // A pose is needed to find the joints; a function that only calls another one hands all on.
     let hands_on = twin(model, function).is_some();
     let finds_joints = needs_joints(model, function);
@@ -156,18 +156,6 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
         arguments.push(quote!(#start: &[f64; #pose]));
     }
     quote!(#(#arguments),*)
-}
-
-fn used_inputs(program: &Program) -> Vec<bool> {
-    use crate::lowering::Source;
-    let mut used = vec![false; program.inputs.len()];
-    let operands = program.steps.iter().flat_map(|s| s.operation.operands());
-    for source in operands.chain(program.entries.iter().map(|e| e.source)) {
-        if let Source::Input { array, .. } = source {
-            used[array] = true;
-        }
-    }
-    used
 }
 
 /// Lines of documentation: meaning, inputs, output, errors, operations.

@@ -229,6 +229,19 @@ impl fmt::Display for Cost {
 }
 
 impl Program {
+    /// For each input, whether the program reads any of its elements.
+    #[must_use]
+    pub fn used_inputs(&self) -> Vec<bool> {
+        let mut used = vec![false; self.inputs.len()];
+        let operands = self.steps.iter().flat_map(|s| s.operation.operands());
+        for source in operands.chain(self.entries.iter().map(|e| e.source)) {
+            if let Source::Input { array, .. } = source {
+                used[array] = true;
+            }
+        }
+        used
+    }
+
     /// Counts the program's operations.
     #[must_use]
     pub fn cost(&self) -> Cost {
