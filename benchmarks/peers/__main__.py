@@ -92,7 +92,9 @@ def main():
         for result, program in zip(results, programs, strict=True):
             print(f"{result.work.title}: times …", file=sys.stderr, flush=True)
             time(result, program, arguments.core, arguments.rounds)
-    print(report.counts(results), report.times(results), sep="\n\n")
+    print(report.counts(results))
+    if not arguments.no_times:
+        print(f"\n{report.times(results)}")
 
 
 if __name__ == "__main__":
