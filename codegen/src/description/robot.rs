@@ -253,12 +253,28 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
         let message = format!(
             "the platform has {dof} degrees of freedom, but the robot has {count} {actuators}"
         );
-        let diagnostic = Diagnostic::new(message, platform.motion.span.clone());
+        let diagnostic = Diagnostic::new(message, platform.motion.span.clone())
+            .label(legs_without_actuator(legs));
         table
             .context
             .report(diagnostic.help("mark more joints with actuated = true"));
     } else {
         check_redundancy(table, platform, legs);
+    }
+}
+
+/// The legs whose joints are all passive, where the missing actuator may have its place.
+fn legs_without_actuator(legs: &[Leg]) -> String {
+    let passive = |leg: &&Leg| leg.joints.iter().all(|joint| !joint.actuated);
+    let names = legs
+        .iter()
+        .filter(passive)
+        .map(|leg| leg.name.value.as_str());
+    let names: Vec<&str> = names.collect();
+    if names.is_empty() {
+        "every leg has an actuator".to_owned()
+    } else {
+        format!("without an actuator: {}", names.join(", "))
     }
 }
 

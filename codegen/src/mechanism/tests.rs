@@ -226,6 +226,19 @@ fn the_home_that_is_proposed_closes() {
     assert_eq!(said(&better), "a robot");
 }
 
+/// The planar robot whose last leg has no motor, as a shape of its own.
+fn one_passive_leg() -> String {
+    let text = changed(PLANAR, &[]);
+    let places = text.find("[[place]]").expect("placements");
+    let leg = text.find("[leg.arm]").expect("a leg");
+    let last = text.rfind("shape = \"arm\"").expect("a last placement");
+    let passive = text[leg..places]
+        .replace("leg.arm", "leg.passive")
+        .replace("actuated = true\n", "");
+    let rest = text[last..].replacen("\"arm\"", "\"passive\"", 1);
+    format!("{}{passive}{}{rest}", &text[..places], &text[places..last])
+}
+
 #[test]
 fn actuators_that_do_not_move_the_platform() {
     let locked = "with all motors locked the platform can still";
@@ -240,7 +253,16 @@ fn actuators_that_do_not_move_the_platform() {
         "18:10",
         &[
             "the platform has 3 degrees of freedom, but the robot has 0 actuators",
+            "without an actuator: leg1, leg2, leg3",
             "actuated = true",
+        ],
+    );
+    assert_said(
+        &one_passive_leg(),
+        "18:10",
+        &[
+            "the platform has 3 degrees of freedom, but the robot has 2 actuators",
+            "without an actuator: leg3",
         ],
     );
     // Two legs at the same place.
