@@ -137,7 +137,7 @@ impl Delta4 {
                 "m_platform",
                 &[
                     ("mx_rod_leg1", 1.8867924528301887), ("mx_rod_leg2", 1.8867924528301887),
-                    ("mx_rod_leg3", 1.886792452830113), ("mx_rod_leg4", 1.8867924528302709),
+                    ("mx_rod_leg3", 1.886792452830113), ("mx_rod_leg4", 1.88679245283027),
                 ],
             ),
             BaseParameter::new(
@@ -160,15 +160,14 @@ impl Delta4 {
                 "zz_arm_leg3R",
                 "zz_arm_leg3",
                 &[
-                    ("ia_arm_leg3", 1.0), ("mx_rod_leg3", -0.07547169811320602),
-                    ("m_rod_leg3", 0.04),
+                    ("ia_arm_leg3", 1.0), ("mx_rod_leg3", -0.075471698113206), ("m_rod_leg3", 0.04),
                 ],
             ),
             BaseParameter::new(
                 "zz_arm_leg4R",
                 "zz_arm_leg4",
                 &[
-                    ("ia_arm_leg4", 1.0), ("mx_rod_leg4", -0.0754716981132097),
+                    ("ia_arm_leg4", 1.0), ("mx_rod_leg4", -0.0754716981132096),
                     ("m_rod_leg4", 0.04),
                 ],
             ),
@@ -185,7 +184,7 @@ impl Delta4 {
             BaseParameter::new(
                 "mx_arm_leg3R",
                 "mx_arm_leg3",
-                &[("mx_rod_leg3", -0.3773584905659996), ("m_rod_leg3", 0.2)],
+                &[("mx_rod_leg3", -0.37735849056599946), ("m_rod_leg3", 0.2)],
             ),
             BaseParameter::new(
                 "mx_arm_leg4R",
@@ -230,7 +229,7 @@ impl Delta4 {
             BaseParameter::new(
                 "yy_rod_leg4R",
                 "yy_rod_leg4",
-                &[("mx_rod_leg4", -0.529999999999993)],
+                &[("mx_rod_leg4", -0.5299999999999931)],
             ),
             BaseParameter::new("yz_rod_leg1", "yz_rod_leg1", &[]),
             BaseParameter::new("yz_rod_leg2", "yz_rod_leg2", &[]),
@@ -241,15 +240,15 @@ impl Delta4 {
                 "zz_rod_leg1",
                 &[
                     ("zz_rod_leg3", 0.9999999999999353), ("mx_rod_leg1", -0.53),
-                    ("mx_rod_leg3", -0.5299999999999656),
+                    ("mx_rod_leg3", -0.5299999999999658),
                 ],
             ),
             BaseParameter::new(
                 "zz_rod_leg2R",
                 "zz_rod_leg2",
                 &[
-                    ("zz_rod_leg4", 1.000000000000081), ("mx_rod_leg2", -0.53),
-                    ("mx_rod_leg4", -0.5300000000000421),
+                    ("zz_rod_leg4", 1.0000000000000808), ("mx_rod_leg2", -0.53),
+                    ("mx_rod_leg4", -0.5300000000000425),
                 ],
             ),
             BaseParameter::new("my_rod_leg1", "my_rod_leg1", &[]),

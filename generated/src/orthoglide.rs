@@ -384,6 +384,40 @@ impl Orthoglide {
             BaseParameter::new("mx_coupler_along_z", "mx_coupler_along_z", &[]),
         ]
     };
+    /// The pose from the actuators in closed form, in the assembly mode of the home configuration; of redundant actuators only some are used.
+    ///
+    /// From the actuators' positions.
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    ///
+    /// Output: 3.
+    ///
+    /// 49 operations (16 additions, 32 multiplications, 1 divisions), 1 square roots, 0 trigonometric pairs, 0 signs, 47 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn pose_in_closed_form(
+        actuators: &[f64; 3],
+    ) -> Result<[f64; 3], ::overact::Error> {
+        let t0 = actuators[0] - 0.56;
+        let t1 = t0 * t0;
+        let t2 = actuators[1] - 0.56;
+        let t4 = t1 + t2 * t2;
+        let t5 = 0.5 * t4;
+        let t6 = actuators[2] - 0.56;
+        let t7 = t0 * t6;
+        let t10 = t6 * t6;
+        let t11 = t1 + t10;
+        let t12 = 0.5 * t11;
+        let t13 = t0 * t2;
+        let t20 = 1.0 / (t4 * t10 + t13 * t13);
+        let t21 = (t5 * (t6 * t7) + t12 * (t2 * t13)) * t20;
+        let t30 = (t5 * (t2 * t11) - t12 * (t0 * t13)) * t20;
+        let t38 = (t12 * (t4 * t6) - t5 * (t0 * t7)) * t20;
+        let t42 = t20 * (0.0961 - (t21 * t21 + t30 * t30 + t38 * t38));
+        ::overact::guard::reach(t42, "along_x")?;
+        let t43 = ::overact::math::sqrt(t42);
+        Ok([t0 - t21 + t2 * t6 * t43, t30 + t7 * t43, t38 + t13 * t43])
+    }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
     /// From the platform's pose and motion.
@@ -8167,7 +8201,7 @@ impl Orthoglide {
             - minus_gfoot_vz_along_y * t406 + t609;
         Ok([t696, t822, t869 + 9.81 * (parameters[99] + parameters[100])])
     }
-    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
+    /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
@@ -8175,6 +8209,9 @@ impl Orthoglide {
         actuators: &[f64; Self::ACTUATORS],
         start: &[f64; Self::POSE],
     ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return Ok(pose);
+        }
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {

@@ -143,39 +143,39 @@ impl Schoenflies4 {
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("mx_rod_leg1", 0.017241379310344866), ("mx_rod_leg2", 0.01724137931034485),
-                    ("mx_rod_leg3", 0.017241379310344838), ("mx_rod_leg4", 0.017241379310346517),
+                    ("mx_rod_leg1", 0.01724137931034474), ("mx_rod_leg2", 0.017241379310344866),
+                    ("mx_rod_leg3", 0.017241379310344692), ("mx_rod_leg4", 0.017241379310344997),
                 ],
             ),
             BaseParameter::new(
                 "mx_platformR",
                 "mx_platform",
                 &[
-                    ("mx_rod_leg1", 0.08620689655172424), ("mx_rod_leg2", 0.14931472479042018),
-                    ("mx_rod_leg3", -0.08620689655172346), ("mx_rod_leg4", -0.14931472479042077),
+                    ("mx_rod_leg1", 0.08620689655172402), ("mx_rod_leg2", 0.1493147247904201),
+                    ("mx_rod_leg3", -0.08620689655172342), ("mx_rod_leg4", -0.1493147247904251),
                 ],
             ),
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
                 &[
-                    ("mx_rod_leg1", 0.14931472479042046), ("mx_rod_leg2", 0.08620689655172463),
-                    ("mx_rod_leg3", -0.14931472479041938), ("mx_rod_leg4", -0.08620689655172353),
+                    ("mx_rod_leg1", 0.14931472479042052), ("mx_rod_leg2", 0.08620689655172414),
+                    ("mx_rod_leg3", -0.1493147247904199), ("mx_rod_leg4", -0.08620689655172195),
                 ],
             ),
             BaseParameter::new(
                 "m_platformR",
                 "m_platform",
                 &[
-                    ("mx_rod_leg1", 1.7241379310344849), ("mx_rod_leg2", 1.7241379310344835),
-                    ("mx_rod_leg3", 1.7241379310344827), ("mx_rod_leg4", 1.7241379310345069),
+                    ("mx_rod_leg1", 1.7241379310344844), ("mx_rod_leg2", 1.7241379310344827),
+                    ("mx_rod_leg3", 1.7241379310344833), ("mx_rod_leg4", 1.7241379310345093),
                 ],
             ),
             BaseParameter::new(
                 "zz_arm_leg1R",
                 "zz_arm_leg1",
                 &[
-                    ("ia_arm_leg1", 1.0), ("mx_rod_leg1", -0.1165517241379312),
+                    ("ia_arm_leg1", 1.0), ("mx_rod_leg1", -0.11655172413793109),
                     ("m_rod_leg1", 0.0676),
                 ],
             ),
@@ -183,7 +183,7 @@ impl Schoenflies4 {
                 "zz_arm_leg2R",
                 "zz_arm_leg2",
                 &[
-                    ("ia_arm_leg2", 1.0), ("mx_rod_leg2", -0.11655172413793106),
+                    ("ia_arm_leg2", 1.0), ("mx_rod_leg2", -0.11655172413793104),
                     ("m_rod_leg2", 0.0676),
                 ],
             ),
@@ -191,7 +191,7 @@ impl Schoenflies4 {
                 "zz_arm_leg3R",
                 "zz_arm_leg3",
                 &[
-                    ("ia_arm_leg3", 1.0), ("mx_rod_leg3", -0.11655172413793115),
+                    ("ia_arm_leg3", 1.0), ("mx_rod_leg3", -0.11655172413793118),
                     ("m_rod_leg3", 0.0676),
                 ],
             ),
@@ -199,29 +199,29 @@ impl Schoenflies4 {
                 "zz_arm_leg4R",
                 "zz_arm_leg4",
                 &[
-                    ("ia_arm_leg4", 1.0), ("mx_rod_leg4", -0.11655172413793105),
+                    ("ia_arm_leg4", 1.0), ("mx_rod_leg4", -0.11655172413793118),
                     ("m_rod_leg4", 0.0676),
                 ],
             ),
             BaseParameter::new(
                 "mx_arm_leg1R",
                 "mx_arm_leg1",
-                &[("mx_rod_leg1", -0.4482758620689647), ("m_rod_leg1", 0.26)],
+                &[("mx_rod_leg1", -0.44827586206896497), ("m_rod_leg1", 0.26)],
             ),
             BaseParameter::new(
                 "mx_arm_leg2R",
                 "mx_arm_leg2",
-                &[("mx_rod_leg2", -0.44827586206896464), ("m_rod_leg2", 0.26)],
+                &[("mx_rod_leg2", -0.44827586206896514), ("m_rod_leg2", 0.26)],
             ),
             BaseParameter::new(
                 "mx_arm_leg3R",
                 "mx_arm_leg3",
-                &[("mx_rod_leg3", -0.44827586206896497), ("m_rod_leg3", 0.26)],
+                &[("mx_rod_leg3", -0.44827586206896614), ("m_rod_leg3", 0.26)],
             ),
             BaseParameter::new(
                 "mx_arm_leg4R",
                 "mx_arm_leg4",
-                &[("mx_rod_leg4", -0.4482758620689662), ("m_rod_leg4", 0.26)],
+                &[("mx_rod_leg4", -0.4482758620689697), ("m_rod_leg4", 0.26)],
             ),
             BaseParameter::new("my_arm_leg1", "my_arm_leg1", &[]),
             BaseParameter::new("my_arm_leg2", "my_arm_leg2", &[]),
@@ -264,12 +264,12 @@ impl Schoenflies4 {
             BaseParameter::new(
                 "yy_rod_leg3R",
                 "yy_rod_leg3",
-                &[("mx_rod_leg3", -0.5800000000000006)],
+                &[("mx_rod_leg3", -0.5800000000000001)],
             ),
             BaseParameter::new(
                 "yy_rod_leg4R",
                 "yy_rod_leg4",
-                &[("mx_rod_leg4", -0.5799999999999996)],
+                &[("mx_rod_leg4", -0.5799999999999984)],
             ),
             BaseParameter::new("yz_rod_leg1", "yz_rod_leg1", &[]),
             BaseParameter::new("yz_rod_leg2", "yz_rod_leg2", &[]),
@@ -278,22 +278,18 @@ impl Schoenflies4 {
             BaseParameter::new(
                 "zz_rod_leg1R",
                 "zz_rod_leg1",
-                &[("mx_rod_leg1", -0.5799999999999986)],
+                &[("mx_rod_leg1", -0.5799999999999998)],
             ),
             BaseParameter::new(
                 "zz_rod_leg2R",
                 "zz_rod_leg2",
-                &[("mx_rod_leg2", -0.5800000000000003)],
+                &[("mx_rod_leg2", -0.5799999999999996)],
             ),
-            BaseParameter::new(
-                "zz_rod_leg3R",
-                "zz_rod_leg3",
-                &[("mx_rod_leg3", -0.5799999999999988)],
-            ),
+            BaseParameter::new("zz_rod_leg3R", "zz_rod_leg3", &[("mx_rod_leg3", -0.58)]),
             BaseParameter::new(
                 "zz_rod_leg4R",
                 "zz_rod_leg4",
-                &[("mx_rod_leg4", -0.580000000000003)],
+                &[("mx_rod_leg4", -0.580000000000014)],
             ),
             BaseParameter::new("my_rod_leg1", "my_rod_leg1", &[]),
             BaseParameter::new("my_rod_leg2", "my_rod_leg2", &[]),

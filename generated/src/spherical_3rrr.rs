@@ -115,7 +115,7 @@ impl Spherical3Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999995214), ("zz_distal_leg2", 0.9999999999886359),
+                    ("zz_distal_leg1", 0.9999999999995213), ("zz_distal_leg2", 0.9999999999886361),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -124,7 +124,7 @@ impl Spherical3Rrr {
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg2", 0.9999999999962865), ("zz_distal_leg3", 0.9999999999949399),
+                    ("zz_distal_leg2", 0.9999999999962865), ("zz_distal_leg3", 0.99999999999494),
                 ],
             ),
             BaseParameter::new("yz_platform", "yz_platform", &[]),
@@ -132,7 +132,7 @@ impl Spherical3Rrr {
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999914265), ("zz_distal_leg3", 0.9999999999967922),
+                    ("zz_distal_leg1", 0.9999999999914265), ("zz_distal_leg3", 0.9999999999967926),
                 ],
             ),
             BaseParameter::new(
@@ -148,7 +148,7 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "mz_platformR",
                 "mz_platform",
-                &[("my_distal_leg2", -0.9999999999974563)],
+                &[("my_distal_leg2", -0.9999999999974564)],
             ),
             BaseParameter::new(
                 "zz_proximal_leg1R",
@@ -189,17 +189,17 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "xx_distal_leg1R",
                 "xx_distal_leg1",
-                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999948115)],
+                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999948112)],
             ),
             BaseParameter::new(
                 "xx_distal_leg2R",
                 "xx_distal_leg2",
-                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.9999999999877046)],
+                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.9999999999877053)],
             ),
             BaseParameter::new(
                 "xx_distal_leg3R",
                 "xx_distal_leg3",
-                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.999999999993914)],
+                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999939143)],
             ),
             BaseParameter::new("xy_distal_leg1", "xy_distal_leg1", &[]),
             BaseParameter::new("xy_distal_leg2", "xy_distal_leg2", &[]),

@@ -134,8 +134,8 @@ impl Spherical4Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.49999999999638695), ("zz_distal_leg2", 0.9999999999876727),
-                    ("zz_distal_leg3", 0.49999999999730244), ("zz_distal_leg4", 0.9999999999920782),
+                    ("zz_distal_leg1", 0.49999999999638706), ("zz_distal_leg2", 0.999999999987673),
+                    ("zz_distal_leg3", 0.49999999999730255), ("zz_distal_leg4", 0.9999999999920782),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -143,53 +143,54 @@ impl Spherical4Rrr {
                 "xz_platformR",
                 "xz_platform",
                 &[
-                    ("zz_distal_leg1", 0.5000000000063525), ("zz_distal_leg3", -0.4999999999961396),
+                    ("zz_distal_leg1", 0.5000000000063526),
+                    ("zz_distal_leg3", -0.49999999999613975),
                 ],
             ),
             BaseParameter::new(
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999932571), ("zz_distal_leg2", 0.4999999999903214),
-                    ("zz_distal_leg3", 0.9999999999978917), ("zz_distal_leg4", 0.49999999999568795),
+                    ("zz_distal_leg1", 0.9999999999932572), ("zz_distal_leg2", 0.4999999999903216),
+                    ("zz_distal_leg3", 0.9999999999978918), ("zz_distal_leg4", 0.49999999999568795),
                 ],
             ),
             BaseParameter::new(
                 "yz_platformR",
                 "yz_platform",
                 &[
-                    ("zz_distal_leg2", 0.49999999999618705),
-                    ("zz_distal_leg4", -0.4999999999938054),
+                    ("zz_distal_leg2", 0.4999999999961872),
+                    ("zz_distal_leg4", -0.49999999999380507),
                 ],
             ),
             BaseParameter::new(
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.49999999999672134), ("zz_distal_leg2", 0.4999999999811521),
-                    ("zz_distal_leg3", 0.49999999999979156), ("zz_distal_leg4", 0.4999999999889667),
+                    ("zz_distal_leg1", 0.4999999999967213), ("zz_distal_leg2", 0.4999999999811522),
+                    ("zz_distal_leg3", 0.49999999999979167), ("zz_distal_leg4", 0.4999999999889669),
                 ],
             ),
             BaseParameter::new(
                 "mx_platformR",
                 "mx_platform",
                 &[
-                    ("my_distal_leg1", -0.7071067811903052), ("my_distal_leg3", 0.7071067811646615),
+                    ("my_distal_leg1", -0.7071067811903052), ("my_distal_leg3", 0.7071067811646614),
                 ],
             ),
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
                 &[
-                    ("my_distal_leg2", -0.7071067811764508), ("my_distal_leg4", 0.7071067811620884),
+                    ("my_distal_leg2", -0.7071067811764505), ("my_distal_leg4", 0.7071067811620885),
                 ],
             ),
             BaseParameter::new(
                 "mz_platformR",
                 "mz_platform",
                 &[
-                    ("my_distal_leg1", 0.7071067811824933), ("my_distal_leg2", 0.7071067811839647),
-                    ("my_distal_leg3", 0.7071067811852728), ("my_distal_leg4", 0.7071067811880266),
+                    ("my_distal_leg1", 0.7071067811824931), ("my_distal_leg2", 0.7071067811839649),
+                    ("my_distal_leg3", 0.7071067811852733), ("my_distal_leg4", 0.7071067811880264),
                 ],
             ),
             BaseParameter::new(
@@ -251,7 +252,7 @@ impl Spherical4Rrr {
             BaseParameter::new(
                 "xx_distal_leg1R",
                 "xx_distal_leg1",
-                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999906477)],
+                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999906478)],
             ),
             BaseParameter::new(
                 "xx_distal_leg2R",
@@ -261,12 +262,12 @@ impl Spherical4Rrr {
             BaseParameter::new(
                 "xx_distal_leg3R",
                 "xx_distal_leg3",
-                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999781497)],
+                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999781504)],
             ),
             BaseParameter::new(
                 "xx_distal_leg4R",
                 "xx_distal_leg4",
-                &[("yy_distal_leg4", -1.0), ("zz_distal_leg4", -0.9999999999908571)],
+                &[("yy_distal_leg4", -1.0), ("zz_distal_leg4", -0.9999999999908568)],
             ),
             BaseParameter::new("xy_distal_leg1", "xy_distal_leg1", &[]),
             BaseParameter::new("xy_distal_leg2", "xy_distal_leg2", &[]),
