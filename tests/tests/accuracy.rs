@@ -30,7 +30,10 @@ fn searched_forms_keep_the_digits_of_derived_ones() -> Result<(), Failure> {
             let allowed = ROUNDING + row.derived * FACTOR * if near { 100.0 } else { 1.0 };
             assert!(row.searched <= allowed, "{stem}: {row:?}");
             // Far from singular configurations nearly all digits are right.
-            assert!(row.distance.is_some() || row.searched < 1e-10, "{stem}: {row:?}");
+            assert!(
+                row.distance.is_some() || row.searched < 1e-10,
+                "{stem}: {row:?}"
+            );
         }
     }
     Ok(())

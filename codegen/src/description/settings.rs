@@ -252,6 +252,10 @@ fn kept_count(robot: &Inventory<'_>) -> usize {
 fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usize>> {
     let names = robot.actuator_names();
     let given = item.strings()?;
+    // Of a robot without actuators that alone is said.
+    if names.is_empty() {
+        return None;
+    }
     let mut kept: Vec<usize> = Vec::new();
     for name in &given {
         match names.iter().position(|known| known.contains(&name.value)) {

@@ -49,15 +49,42 @@ impl Diagnostics {
     }
 
     fn render(&self, source: &Source, renderer: &Renderer) -> String {
-        let texts: Vec<String> = self
-            .iter()
-            .map(|d| render_one(d, source, renderer))
-            .collect();
+        let mut texts: Vec<String> = Vec::new();
+        for (at, diagnostic) in self.iter().enumerate() {
+            let same = |d: &&Diagnostic| d.message == diagnostic.message;
+            let first = self.iter().position(|d| same(&d)) == Some(at);
+            let places: Vec<&Diagnostic> = self.iter().filter(same).collect();
+            match places.len() > REPEATED {
+                true if first => texts.push(render_one(diagnostic, &places[1..], source, renderer)),
+                true => {}
+                false => texts.push(render_one(diagnostic, &[], source, renderer)),
+            }
+        }
         texts.join("\n\n")
     }
 }
 
-fn render_one(diagnostic: &Diagnostic, source: &Source, renderer: &Renderer) -> String {
+/// The same error at more places than this is shown once, with the lines of the others.
+const REPEATED: usize = 3;
+
+/// The lines of errors: the first ones by number.
+fn lines(others: &[&Diagnostic], source: &Source) -> String {
+    let of = |d: &&Diagnostic| Some(source.position(d.span.as_ref()?).line.to_string());
+    let numbers: Vec<String> = others.iter().filter_map(of).take(8).collect();
+    let rest = others.len() - numbers.len();
+    let more = match rest {
+        0 => String::new(),
+        _ => format!(" and at {rest} more places"),
+    };
+    format!("the same in lines {}{more}", numbers.join(", "))
+}
+
+fn render_one(
+    diagnostic: &Diagnostic,
+    others: &[&Diagnostic],
+    source: &Source,
+    renderer: &Renderer,
+) -> String {
     let title = Level::ERROR.primary_title(diagnostic.message.as_str());
     let mut group = match &diagnostic.span {
         Some(span) => {
@@ -72,6 +99,10 @@ fn render_one(diagnostic: &Diagnostic, source: &Source, renderer: &Renderer) -> 
     };
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(help.as_str()));
+    }
+    let repeated = (!others.is_empty()).then(|| lines(others, source));
+    if let Some(repeated) = &repeated {
+        group = group.element(Level::NOTE.message(repeated.as_str()));
     }
     renderer.render(&[group])
 }
@@ -101,6 +132,21 @@ error: unknown key `gammma`
   = help: did you mean `gamma`?";
         assert_eq!(errors.render_plain(&source), expected);
         assert!(errors.render_styled(&source).contains('\u{1b}'));
+    }
+
+    #[test]
+    fn an_error_that_is_everywhere_is_shown_once() {
+        let source = Source::new("a.toml", "x\n".repeat(20));
+        let mut errors = Diagnostics::new();
+        for line in 0..14 {
+            errors.push(Diagnostic::new("wrong", 2 * line..2 * line + 1));
+        }
+        errors.push(Diagnostic::new("other", 30..31));
+        let text = errors.render_plain(&source);
+        assert_eq!(text.matches("error: ").count(), 2, "{text}");
+        let note = "= note: the same in lines 2, 3, 4, 5, 6, 7, 8, 9 and at 5 more places";
+        assert!(text.contains(note), "{text}");
+        assert_eq!(errors.located(&source).len(), 15);
     }
 
     #[test]
