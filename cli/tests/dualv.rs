@@ -111,6 +111,7 @@ fn assert_tables(text: &str) {
         let found = lines.any(|line| line.starts_with(start) && line.contains(number));
         assert!(found, "{start} {number} in\n{text}");
     };
+    line("log_trajectory_1.csv  case 1, eq. (26), published", "9.1");
     line("m_payload", "5.42");
     line("zz_1_leg4R", "0.0507");
     for controller in ["computed torque, case 1", "computed torque, case 2"] {

@@ -164,7 +164,8 @@ fn torques(
             add(&one.run, format!("{}, eq. (26)", case(one.model)), &closure);
         }
         let others = known.iter().flat_map(|all| &all.cross_validation);
-        for other in others.filter(|other| other.run == one.run && other.model == one.model) {
+        for other in others.filter(|other| is_run(&one.run, &other.run) && other.model == one.model)
+        {
             let what = format!("{}, eq. (26), published", case(one.model));
             add(&one.run, what, &other.torques_percent);
         }
@@ -172,6 +173,24 @@ fn torques(
     let mut header = actuator_header(["run", "prediction"], &actuators);
     header.push(String::from("mean"));
     (header, rows)
+}
+
+/// Whether a run is the one of that name: itself, or a log file that `simulate` named after it, such as
+/// `log_trajectory_1.csv` after `trajectory 1`.
+fn is_run(run: &str, name: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.split(|c: char| !c.is_alphanumeric())
+            .filter(|word| !word.is_empty())
+            .map(str::to_lowercase)
+            .collect()
+    };
+    let file = std::path::Path::new(run);
+    let stem = match file.extension() {
+        Some(_) => file.file_stem().and_then(|stem| stem.to_str()),
+        None => None,
+    };
+    let (run, name) = (words(stem.unwrap_or(run)), words(name));
+    !name.is_empty() && run.ends_with(&name)
 }
 
 /// Table 4.
@@ -192,8 +211,8 @@ fn tracking(
     for one in &identification.tracking {
         add(&one.run, one.controller.clone(), &one.largest);
         let others = known.iter().flat_map(|all| &all.tracking);
-        let same =
-            others.filter(|other| other.run == one.run && other.controller == one.controller);
+        let same = others
+            .filter(|other| is_run(&one.run, &other.run) && other.controller == one.controller);
         for other in same {
             add(
                 &one.run,
@@ -206,4 +225,28 @@ fn tracking(
         actuator_header(["run", "controller"], &first.actuators),
         rows,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_run;
+
+    #[test]
+    fn logs_are_those_of_the_runs_that_they_are_named_after() {
+        for run in [
+            "trajectory 1",
+            "log_trajectory_1.csv",
+            "a b/log_trajectory_1.csv",
+        ] {
+            assert!(is_run(run, "trajectory 1"), "{run}");
+        }
+        for run in [
+            "trajectory 2",
+            "log_trajectory_11.csv",
+            "1.csv",
+            "trajectory_1_late.csv",
+        ] {
+            assert!(!is_run(run, "trajectory 1"), "{run}");
+        }
+    }
 }
