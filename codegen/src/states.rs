@@ -2,9 +2,9 @@
 //! every leg in the working mode of the home configuration.
 
 use crate::cas::field::mix;
-use crate::mechanism::Mechanism;
 use crate::mechanism::home::close_from;
 use crate::mechanism::numeric::{platform_frame, target};
+use crate::mechanism::{Mechanism, Motion};
 
 /// A state of a robot.
 #[derive(Debug, Clone)]
@@ -84,21 +84,33 @@ fn displaced(
             .collect();
         return Some((joints.clone(), joints));
     };
-    // Lengths scale with the robot: with the distance of the legs' bases from the platform.
+    let pose = pose_towards(mechanism, platform.motion, direction, spread);
+    let joints = follow(mechanism, &pose)?;
+    Some((pose, joints))
+}
+
+/// The pose at a length from home in a direction of the pose's coordinates. Lengths scale with the
+/// robot: with the distance of the legs' bases from the platform; quaternions stay units.
+#[must_use]
+pub fn pose_towards(
+    mechanism: &Mechanism,
+    motion: Motion,
+    direction: &[f64],
+    length: f64,
+) -> Vec<f64> {
     let scale = mechanism.length_scale();
-    let names = platform.motion.pose_coordinates();
-    let mut pose = home.pose.clone();
+    let names = motion.pose_coordinates();
+    let mut pose = mechanism.home.pose.clone();
     for ((coordinate, name), d) in pose.iter_mut().zip(&names).zip(direction) {
         let angular = *name == "phi" || name.starts_with('q');
-        *coordinate += d * spread * if angular { 1.0 } else { scale };
+        *coordinate += d * length * if angular { 1.0 } else { scale };
     }
-    if platform.motion.has_quaternion() {
+    if motion.has_quaternion() {
         let start = pose.len() - 4;
         let norm = pose[start..].iter().map(|q| q * q).sum::<f64>().sqrt();
         pose[start..].iter_mut().for_each(|q| *q /= norm);
     }
-    let joints = follow(mechanism, &pose)?;
-    Some((pose, joints))
+    pose
 }
 
 /// Joints at a pose, followed from home in small steps so that the working mode stays.

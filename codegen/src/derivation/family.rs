@@ -2,7 +2,7 @@
 
 use super::configuration::From;
 use super::forward_kinematics::closed_form;
-use super::functions::JointsBy;
+use super::selection::JointsBy;
 use crate::cas::Arena;
 use crate::mechanism::Mechanism;
 

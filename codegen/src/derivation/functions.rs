@@ -6,9 +6,9 @@ use super::family::{Columns, Family};
 use super::forward_kinematics::closed_form;
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
 use super::regressor::{BodyParameter, Projection};
-use super::robot::{Formulation, Guard, GuardKind, Robot, Underivable};
-use crate::cas::{Arena, Expr, Number};
-use crate::lowering::Effort;
+use super::robot::{Guard, GuardKind, Robot, Underivable};
+use super::selection::{JointsBy, Selection};
+use crate::cas::{Arena, Expr};
 use crate::mechanism::{JointKind, Mechanism};
 
 /// A function as expressions.
@@ -22,43 +22,6 @@ pub struct Derived<'a> {
     pub entries: Vec<Expr<'a>>,
     /// Conditions for the output to have a value.
     pub guards: Vec<Guard<'a>>,
-}
-
-/// What the derivation of a function needs beside the mechanism.
-#[derive(Debug, Clone, Default)]
-pub struct Selection {
-    /// The standard parameters whose columns are not identically zero.
-    pub standard: Vec<BodyParameter>,
-    /// The independent ones among them.
-    pub base: Vec<BodyParameter>,
-    /// The payload's parameters whose columns are not identically zero.
-    pub payload: Vec<BodyParameter>,
-    /// Kept actuators of case 2.
-    pub kept_actuators: Vec<usize>,
-    /// How the robot is written.
-    pub formulation: Formulation,
-    /// Dependent columns that are had more cheaply from others than from their definition.
-    pub combined: Vec<Combination>,
-    /// How hard cheaper ways to write a function are searched.
-    pub effort: Effort,
-}
-
-/// A column as a linear combination of other columns.
-#[derive(Debug, Clone)]
-pub struct Combination {
-    /// The parameter whose column it is.
-    pub parameter: BodyParameter,
-    /// The other columns with their coefficients.
-    pub of: Vec<(BodyParameter, Number)>,
-}
-
-/// How the joints follow from the pose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum JointsBy {
-    /// In closed form, as part of the function.
-    Rule,
-    /// By Newton's method, before the function is evaluated: joints are an input of the program.
-    Newton,
 }
 
 /// Derives a function in its own graph.

@@ -28,10 +28,12 @@ pub mod platform;
 pub mod rates;
 pub mod regressor;
 pub mod robot;
+pub mod selection;
 
 pub use configuration::From;
 pub use family::{Columns, Family};
-pub use functions::{Combination, Derived, JointsBy, Selection, derive};
+pub use functions::{Derived, derive};
 pub use orientation::station_count;
 pub use regressor::BodyParameter;
 pub use robot::{Formulation, Guard, GuardKind, Robot, Underivable};
+pub use selection::{Combination, JointsBy, Selection};

@@ -7,9 +7,9 @@
 
 use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
-use super::functions::Combination;
 use super::linear::{dot, product, transposed};
 use super::robot::{Robot, RobotMotion, Underivable};
+use super::selection::Combination;
 use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::description::StandardParameter;
 

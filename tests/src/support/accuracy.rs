@@ -7,7 +7,7 @@ use overact_codegen::derivation::{Columns, Family, From};
 use overact_codegen::evaluation::{Rows, Workspace};
 use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
-use overact_codegen::states::{Stream, random_states};
+use overact_codegen::states::{Stream, pose_towards, random_states};
 use overact_codegen::{Effort, Request, RobotModel, compile_with};
 
 /// Rays from the home pose on which singular configurations are approached.
@@ -130,6 +130,9 @@ fn towards_singular(
     guarded: &Program,
     joints: &Program,
 ) -> Vec<(Option<f64>, Vec<State>)> {
+    let Some(platform) = &mechanism.platform else {
+        return Vec::new();
+    };
     let mut stream = Stream::new(11);
     let dof = mechanism.dof();
     let distances: Vec<f64> = (1..=7).map(|k| 10_f64.powi(-k)).collect();
@@ -141,7 +144,7 @@ fn towards_singular(
         let (twist, acceleration) = (rates(1.0), rates(10.0));
         let state = |length: f64| {
             let mut state = State {
-                pose: along(mechanism, &direction, length),
+                pose: pose_towards(mechanism, platform.motion, &direction, length),
                 joints: Vec::new(),
                 twist: twist.clone(),
                 acceleration: acceleration.clone(),
@@ -181,26 +184,6 @@ fn end_of_ray(is_possible: &dyn Fn(f64) -> bool) -> Option<f64> {
         }
     }
     (inside > 0.0).then_some(inside)
-}
-
-/// The pose at a length along a ray from home; lengths scale with the robot, quaternions stay units.
-fn along(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<f64> {
-    let mut pose = mechanism.home.pose.clone();
-    let Some(platform) = &mechanism.platform else {
-        return pose;
-    };
-    let scale = mechanism.length_scale();
-    let names = platform.motion.pose_coordinates();
-    for ((coordinate, name), d) in pose.iter_mut().zip(&names).zip(direction) {
-        let angular = *name == "phi" || name.starts_with('q');
-        *coordinate += d * length * if angular { 1.0 } else { scale };
-    }
-    if platform.motion.has_quaternion() {
-        let start = pose.len() - 4;
-        let norm = pose[start..].iter().map(|q| q * q).sum::<f64>().sqrt();
-        pose[start..].iter_mut().for_each(|q| *q /= norm);
-    }
-    pose
 }
 
 fn inputs(program: &Program, state: &State) -> Vec<Vec<f64>> {
