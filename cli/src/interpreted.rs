@@ -15,7 +15,7 @@ use overact::{
 use overact_codegen::{
     RobotModel,
     derivation::{Columns, Family, From},
-    evaluation::{Failed, Rows, Workspace},
+    evaluation::{Evaluator, Failed, Rows},
     lowering::{Condition, Program},
     mechanism::Mechanism,
 };
@@ -53,7 +53,7 @@ struct Served {
     index: usize,
     /// Where each input of the program comes from.
     inputs: Vec<Given>,
-    workspaces: Pool<Workspace>,
+    evaluators: Pool<Evaluator>,
 }
 
 /// Memory for forward kinematics.
@@ -68,14 +68,20 @@ struct Scratch {
 
 /// Memory that calls take and give back, so that a call allocates only when more threads than ever
 /// before are in it. Programs have memory of their own: sizing it anew would cost more than a sample.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Pool<T>(Mutex<Vec<T>>);
 
-impl<T: Default> Pool<T> {
-    fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
+impl<T> Default for Pool<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T> Pool<T> {
+    fn with<R>(&self, make: impl FnOnce() -> T, work: impl FnOnce(&mut T) -> R) -> R {
         // What a panicking thread left behind is memory like any other.
         let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut memory = free().pop().unwrap_or_default();
+        let mut memory = free().pop().unwrap_or_else(make);
         let result = work(&mut memory);
         free().push(memory);
         result
@@ -159,12 +165,12 @@ impl InterpretedRobot {
         // A program that does not fit the trait is not offered rather than misread.
         let inputs = inputs
             .filter(|i| i.len() <= INPUTS && wanted.program.entries.len() == rows * columns)?;
-        let workspaces = Pool::default();
+        let evaluators = Pool::default();
         Some(Served {
             function,
             index,
             inputs,
-            workspaces,
+            evaluators,
         })
     }
 
@@ -178,17 +184,14 @@ impl InterpretedRobot {
             values: actuators,
             shared: false,
         }];
-        let mut workspace = Workspace::default();
-        let found = function
-            .program
-            .evaluate(1, &given, &mut pose, &mut workspace);
+        let found = function.program.evaluate(1, &given, &mut pose);
         found.ok().map(|()| pose)
     }
 
     /// The pose of least squares, found from the one in `pose`.
     fn fit_pose(&self, actuators: &[f64], pose: &mut [f64]) -> Result<(), Error> {
         let sizes = self.names.sizes;
-        self.scratch.with(|scratch| {
+        self.scratch.with(Scratch::default, |scratch| {
             scratch.resize(&sizes);
             let Scratch {
                 actuators: reached,
@@ -376,10 +379,10 @@ impl Model for InterpretedRobot {
         }
         let given = &given[..served.inputs.len()];
         let program = self.program(served);
-        let run = |workspace: &mut Workspace| program.evaluate(samples, given, output, workspace);
+        let run = |evaluator: &mut Evaluator| evaluator.evaluate(samples, given, output);
         served
-            .workspaces
-            .with(run)
+            .evaluators
+            .with(|| Evaluator::new(program), run)
             .map_err(|failed| self.error(program, &failed))
     }
 

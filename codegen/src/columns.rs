@@ -9,7 +9,7 @@ use crate::derivation::{
     BodyParameter, Columns, Combination, Family, Formulation, From, JointsBy, Robot, Selection,
     Underivable, derive,
 };
-use crate::evaluation::{Rows, Workspace};
+use crate::evaluation::Rows;
 use crate::lowering::{Effort, Program, Source};
 use crate::mechanism::{BaseColumns, Mechanism};
 use crate::states::{State, random_states};
@@ -148,11 +148,6 @@ pub fn sample(program: &Program, states: &[State], rows: usize, columns: usize) 
     let mut output = vec![0.0; states.len() * rows * columns];
     // Regular states by construction: a guard that fails all the same leaves zeros, which count for
     // nothing.
-    let _ = program.evaluate(
-        states.len(),
-        &inputs,
-        &mut output,
-        &mut Workspace::default(),
-    );
+    let _ = program.evaluate(states.len(), &inputs, &mut output);
     DMatrix::from_row_slice(states.len() * rows, columns, &output)
 }

@@ -1,7 +1,7 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::evaluation::{BLOCK, Rows, Workspace};
+use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::lowering::{Condition, Program};
 use overact_robots::DualV;
 use overact_tests::reference::robots;
@@ -41,7 +41,7 @@ fn at_once(program: &Program, all: &[Sample]) -> Result<Vec<f64>, Failure> {
         .collect();
     let mut output = vec![f64::NAN; all.len() * program.output.len()];
     program
-        .evaluate(all.len(), &inputs, &mut output, &mut Workspace::default())
+        .evaluate(all.len(), &inputs, &mut output)
         .map_err(|failed| format!("`{}`: {failed:?}", program.output.name))?;
     Ok(output)
 }
@@ -91,7 +91,7 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
     };
     let inputs = [row(&poses), row(&rates), row(&rates)];
     let mut output = vec![0.0; STATES * program.output.len()];
-    let failed = program.evaluate(STATES, &inputs, &mut output, &mut Workspace::default());
+    let failed = program.evaluate(STATES, &inputs, &mut output);
     let failed = failed.err().ok_or("three metres are out of reach")?;
     assert_eq!(failed.sample, BLOCK + 3);
     let condition = &program.guards[failed.guard].condition;

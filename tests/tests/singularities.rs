@@ -8,7 +8,7 @@
 
 use nalgebra::DMatrix;
 use overact::Error;
-use overact_codegen::evaluation::{Rows, Workspace};
+use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Condition;
 use overact_codegen::{Effort, Request, RobotModel, Source, compile_with};
 use overact_tests::compiled;
@@ -136,7 +136,7 @@ impl<'a> Robot<'a> {
         });
         let inputs = inputs.collect::<Result<Vec<_>, Failure>>()?;
         let mut output = vec![0.0; program.output.len()];
-        let failed = program.evaluate(1, &inputs, &mut output, &mut Workspace::default());
+        let failed = program.evaluate(1, &inputs, &mut output);
         Ok(match failed {
             Ok(()) => Ok(overact_tests::support::backend::matrix(program, &output)),
             Err(failed) => Err(match &program.guards[failed.guard].condition {

@@ -1,7 +1,7 @@
 //! Times a generated function and the evaluation of its program over blocks, in turns, and prints the
 //! shortest times per sample in nanoseconds: function, blocks as they lie, rows.
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::evaluation::{Rows, Workspace};
+use overact_codegen::evaluation::{Evaluator, Number, Rows};
 use overact_codegen::{Source, compile};
 use overact_timed::@MODULE@;
 use std::{env, error::Error, fs, hint::black_box, time::Instant};
@@ -38,10 +38,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     let inputs: Vec<Rows<'_>> = inputs.iter().map(|values| Rows { values, shared: false }).collect();
     let mut output = vec![0.0; SAMPLES * program.entries.len()];
-    let mut workspace = Workspace::default();
+    let mut evaluator = Evaluator::new(program);
     // Blocks first: all agree with the function.
-    program
-        .evaluate(SAMPLES, &inputs, &mut output, &mut workspace)
+    evaluator
+        .evaluate(SAMPLES, &inputs, &mut output)
         .map_err(|failed| format!("{failed:?}"))?;
     for (s, row) in states.iter().zip(output.chunks(program.entries.len())) {
         let expected = overact_timed::Output::numbers(&@CALL@(@ARGUMENTS@))?;
@@ -59,13 +59,13 @@ fn main() -> Result<(), Box<dyn Error>> {
                     let _ = black_box(@CALL@(@ARGUMENTS@));
                 }),
                 1 => {
-                    let take = |block: overact_codegen::evaluation::Block<'_>| {
-                        black_box(&block);
+                    let take = |number: Number<'_>| {
+                        black_box(&number);
                     };
-                    let _ = black_box(program.evaluate_blocks(SAMPLES, &inputs, &mut workspace, take));
+                    let _ = black_box(evaluator.evaluate_numbers(SAMPLES, &inputs, take));
                 }
                 _ => {
-                    let _ = black_box(program.evaluate(SAMPLES, &inputs, &mut output, &mut workspace));
+                    let _ = black_box(evaluator.evaluate(SAMPLES, &inputs, &mut output));
                 }
             }
             *best = best.min(start.elapsed().as_secs_f64() * 1e9 / SAMPLES as f64);

@@ -15,7 +15,7 @@ use overact_codegen::{
     Effort, Request, RobotModel,
     compile::model_with,
     derivation::{Columns, Family, From},
-    evaluation::{Rows, Workspace},
+    evaluation::Rows,
     lowering::Program,
     mechanism::Mechanism,
 };
@@ -187,7 +187,7 @@ fn evaluate(
         })
         .collect();
     let mut values = vec![0.0; states.len() * program.entries.len()];
-    let done = program.evaluate(states.len(), &rows, &mut values, &mut Workspace::default());
+    let done = program.evaluate(states.len(), &rows, &mut values);
     done.map_err(|failed| {
         let error = robot.error(program, &failed);
         states.problem(error.sample, &error.error.to_string())

@@ -7,7 +7,7 @@ use overact::{
 };
 use overact_codegen::{
     derivation::{Family, From},
-    evaluation::{Rows, Workspace},
+    evaluation::Rows,
     lowering::Program,
 };
 
@@ -52,18 +52,16 @@ impl InterpretedRobot {
         let mut error = vec![0.0; sizes.joints];
         let mut square = vec![0.0; sizes.joints * sizes.joints];
         let mut way = vec![0.0; sizes.pose];
-        let mut workspaces = [Workspace::default(), Workspace::default()];
         let samples = poses.chunks(sizes.pose).zip(found.chunks_mut(sizes.joints));
         for (sample, (pose, joints)) in samples.enumerate() {
-            let [first, second] = &mut workspaces;
             let workspace = inverse::Workspace {
                 error: &mut error,
                 jacobian: &mut square,
                 pose: &mut way,
             };
             let evaluate = |pose: &[f64], joints: &[f64], error: &mut [f64], square: &mut [f64]| {
-                self.run(closure, pose, joints, error, first)?;
-                self.run(jacobian, pose, joints, square, second)
+                self.run(closure, pose, joints, error)?;
+                self.run(jacobian, pose, joints, square)
             };
             inverse::solve(legs, pose, joints, workspace, evaluate)
                 .map_err(|error| SampleError { sample, error })?;
@@ -77,14 +75,13 @@ impl InterpretedRobot {
         pose: &[f64],
         joints: &[f64],
         out: &mut [f64],
-        workspace: &mut Workspace,
     ) -> Result<(), Error> {
         let rows = |values| Rows {
             values,
             shared: false,
         };
         program
-            .evaluate(1, &[rows(pose), rows(joints)], out, workspace)
+            .evaluate(1, &[rows(pose), rows(joints)], out)
             .map_err(|failed| self.error(program, &failed).error)
     }
 }

@@ -41,6 +41,28 @@ pub(super) enum Kind {
     Angle,
 }
 
+impl Kind {
+    /// A number of its own for every kind.
+    pub(super) const fn code(self) -> u8 {
+        match self {
+            Self::One(a) => a as u8,
+            Self::From(a) => 3 + a as u8,
+            Self::Then(a, b) => 6 + 3 * (a as u8) + b as u8,
+            Self::Both(a, b, c) => 15 + 9 * (a as u8) + 3 * (b as u8) + c as u8,
+            Self::TwoProducts => 42,
+            Self::ThreeProducts => 43,
+            Self::Divide => 44,
+            Self::Negate => 45,
+            Self::Root => 46,
+            Self::Sign => 47,
+            Self::Signed => 48,
+            Self::ThreeSigned => 49,
+            Self::Direction => 50,
+            Self::Angle => 51,
+        }
+    }
+}
+
 /// A number of a program; constants by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Value {

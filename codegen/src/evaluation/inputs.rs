@@ -1,12 +1,9 @@
 //! Inputs on their way into a block: from rows to values that lie side by side.
 
-use super::lanes::{Lanes, store};
+use super::lanes::{Lanes, WIDTH, store};
 use super::plan::{Load, Plan};
-use super::turn::{Plain, SIDE, Turn};
 use super::{BLOCK, Rows};
 use crate::lowering::Program;
-use pulp::NullaryFnOnce;
-use std::cell::Cell;
 
 /// Fills the slots of the inputs with those of `count` samples from sample `first` on. Lanes beyond the
 /// last sample repeat it, so that they stay harmless.
@@ -30,20 +27,8 @@ pub(super) fn load(
             continue;
         }
         let values = rows.values.get(first * width..).unwrap_or_default();
-        let read = Read {
-            loads,
-            values,
-            width,
-            count: count.min(values.len() / width),
-            slots,
-            turn: Plain,
-        };
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = pulp::x86::V3::try_new() {
-            simd.vectorize(read.with(simd));
-            continue;
-        }
-        read.call();
+        let values = values.get(..count * width).unwrap_or(values);
+        read(loads, values, width, slots);
     }
 }
 
@@ -56,78 +41,38 @@ fn fill(loads: &[Load], values: &[f64], slots: &[Lanes]) {
 }
 
 /// Numbers of one array, whose rows have `width` of them, on their way to their slots.
-struct Read<'a, T> {
-    loads: &'a [Load],
-    values: &'a [f64],
-    width: usize,
-    count: usize,
-    slots: &'a [Lanes],
-    turn: T,
-}
-
-impl<T: Turn> NullaryFnOnce for Read<'_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        if self.count == 0 {
-            return fill(self.loads, &[], self.slots);
-        }
-        let mut rest = self.loads;
-        while let Some(load) = rest.first() {
-            let together = rest.iter().take_while(|l| l.index < load.index + SIDE);
-            let (part, others) = rest.split_at(together.count());
-            self.part(load.index, part);
-            rest = others;
-        }
-    }
-}
-
-impl<'a, T: Turn> Read<'a, T> {
-    #[cfg(target_arch = "x86_64")]
-    const fn with<U>(&self, turn: U) -> Read<'a, U> {
-        Read {
-            loads: self.loads,
-            values: self.values,
-            width: self.width,
-            count: self.count,
-            slots: self.slots,
-            turn,
-        }
-    }
-
-    /// Numbers of which the first one is number `index` of a row, and the last one less than [`SIDE`] behind.
-    #[inline(always)]
-    fn part(&self, index: usize, loads: &[Load]) {
-        let (values, width) = (&self.values[index..], self.width);
-        let unused: Lanes = [const { Cell::new(0.0) }; BLOCK];
-        let targets: [&Lanes; SIDE] = std::array::from_fn(|side| {
-            let load = loads.iter().find(|load| load.index == index + side);
-            load.map_or(&unused, |load| &self.slots[load.slot])
-        });
-        let targets = targets.map(|lanes| lanes.as_chunks::<SIDE>().0);
-        // Squares may reach into the next row, but not beyond the last one.
-        let reach = (SIDE - 1) * width + SIDE;
-        let mut turned = 0;
-        while turned + SIDE <= self.count {
-            let Some(rows) = values.get(turned * width..turned * width + reach) else {
-                break;
-            };
-            let row = |k: usize| *rows[k * width..].first_chunk().unwrap_or(&[0.0; SIDE]);
-            let (a, b, c, d) = self.turn.turn(row(0), row(1), row(2), row(3));
-            store(&targets[0][turned / SIDE], a);
-            store(&targets[1][turned / SIDE], b);
-            store(&targets[2][turned / SIDE], c);
-            store(&targets[3][turned / SIDE], d);
-            turned += SIDE;
-        }
-        for load in loads {
-            let lanes = &self.slots[load.slot];
-            for (sample, lane) in lanes.iter().enumerate().take(self.count).skip(turned) {
-                lane.set(self.values[sample * width + load.index]);
+fn read(loads: &[Load], values: &[f64], width: usize, slots: &[Lanes]) {
+    macro_rules! of_width {
+        ($($known:literal)*) => {
+            match width {
+                $($known => read_vectors::<$known>(loads, values, slots),)*
+                _ => 0,
             }
-            let last = lanes[self.count - 1].get();
-            lanes[self.count..].iter().for_each(|lane| lane.set(last));
+        };
+    }
+    // What is known when the code is compiled takes half the time.
+    let done = of_width!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
+    let count = values.len() / width;
+    for load in loads {
+        let lanes = &slots[load.slot];
+        for (sample, lane) in lanes.iter().enumerate().take(count).skip(done) {
+            lane.set(values[sample * width + load.index]);
+        }
+        if count < BLOCK {
+            let last = count.checked_sub(1).map_or(0.0, |last| lanes[last].get());
+            lanes[count..].iter().for_each(|lane| lane.set(last));
         }
     }
+}
+
+/// As many samples as make whole vectors; returns how many these are.
+fn read_vectors<const N: usize>(loads: &[Load], values: &[f64], slots: &[Lanes]) -> usize {
+    let vectors = values.as_chunks::<N>().0.as_chunks::<WIDTH>().0;
+    for load in loads.iter().filter(|load| load.index < N) {
+        let parts = slots[load.slot].as_chunks::<WIDTH>().0;
+        for (part, rows) in parts.iter().zip(vectors) {
+            store(part, std::array::from_fn(|k| rows[k][load.index]));
+        }
+    }
+    vectors.len() * WIDTH
 }

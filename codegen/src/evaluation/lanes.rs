@@ -6,24 +6,24 @@
 //! last digit.
 
 use super::fuse::{Arithmetic, Kind};
-use super::plan::{Pass, Plan, Slot};
+use super::plan::{Pass, Slot};
 use super::trigonometry::sines_and_cosines;
 use super::{BLOCK, signed};
 use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
 /// Numbers that are worked on at a time: the widest vector.
-const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 /// The values of one number at the samples of a block. Cells, because a step's result may lie where its
 /// operands are.
 pub(super) type Lanes = [Cell<f64>; BLOCK];
 
-/// Runs a plan over a block.
-pub(super) fn run(plan: &Plan, blocks: &[Lanes]) {
+/// Runs passes over a block.
+pub(super) fn run(passes: &[Pass], blocks: &[Lanes]) {
     #[cfg(target_arch = "x86_64")]
     {
-        let run = Run::<true> { plan, blocks };
+        let run = Run::<true> { passes, blocks };
         if let Some(simd) = pulp::x86::V4::try_new() {
             return simd.vectorize(run);
         }
@@ -31,13 +31,13 @@ pub(super) fn run(plan: &Plan, blocks: &[Lanes]) {
             return simd.vectorize(run);
         }
     }
-    Run::<false> { plan, blocks }.call();
+    Run::<false> { passes, blocks }.call();
 }
 
 /// `FUSED`: whether the processor adds a product in one rounding.
 #[derive(Clone, Copy)]
 struct Run<'a, const FUSED: bool> {
-    plan: &'a Plan,
+    passes: &'a [Pass],
     blocks: &'a [Lanes],
 }
 
@@ -46,65 +46,74 @@ impl<const FUSED: bool> NullaryFnOnce for Run<'_, FUSED> {
 
     #[inline(always)]
     fn call(self) {
-        for pass in &self.plan.passes {
+        for pass in self.passes {
             self.pass(pass);
         }
     }
 }
 
-/// The body with `$f` as the function of an [`Arithmetic`].
-macro_rules! with {
-    ($operation:expr, $f:ident, $body:expr) => {
-        match $operation {
-            Arithmetic::Add => {
-                let $f = |x: f64, y: f64| x + y;
-                $body
-            }
-            Arithmetic::Sub => {
-                let $f = |x: f64, y: f64| x - y;
-                $body
-            }
-            Arithmetic::Mul => {
-                let $f = |x: f64, y: f64| x * y;
-                $body
-            }
+/// The body for every operation in place of [`Arithmetic`] `$o`, `$f` being its function.
+macro_rules! for_each {
+    ($o:ident, $f:ident, $body:expr) => {{
+        {
+            const $o: Arithmetic = Arithmetic::Add;
+            let $f = |x: f64, y: f64| x + y;
+            $body
+        }
+        {
+            const $o: Arithmetic = Arithmetic::Sub;
+            let $f = |x: f64, y: f64| x - y;
+            $body
+        }
+        {
+            const $o: Arithmetic = Arithmetic::Mul;
+            let $f = |x: f64, y: f64| x * y;
+            $body
+        }
+    }};
+}
+
+/// Goes on with `$body` where the pass is of a kind.
+macro_rules! when {
+    ($at:ident, $kind:expr, $body:expr) => {
+        if $at.code == const { $kind.code() } {
+            return $body;
         }
     };
 }
 
 impl<'a, const FUSED: bool> Run<'a, FUSED> {
+    // One comparison after the other, which the compiler makes one jump of; kinds within kinds would be several.
     #[inline(always)]
     fn pass(&self, at: &Pass) {
-        match at.kind {
-            Kind::One(first) => with!(first, f, self.each(at, |[a, b]| f(a, b))),
-            Kind::Then(first, then) => {
-                with!(
-                    first,
-                    f,
-                    with!(then, g, self.each(at, |[a, b, c]| g(f(a, b), c)))
+        for_each!(F, f, {
+            when!(at, Kind::One(F), self.each(at, |[a, b]| f(a, b)));
+            when!(at, Kind::From(F), self.each(at, |[a, b, c]| c - f(a, b)));
+            for_each!(G, g, {
+                when!(
+                    at,
+                    Kind::Then(F, G),
+                    self.each(at, |[a, b, c]| g(f(a, b), c))
                 );
-            }
-            Kind::From(first) => with!(first, f, self.each(at, |[a, b, c]| c - f(a, b))),
-            Kind::Both(first, middle, last) => with!(
-                first,
-                f,
-                with!(
-                    middle,
-                    g,
-                    with!(last, h, self.each(at, |[a, b, c, d]| g(f(a, b), h(c, d))))
-                )
-            ),
-            Kind::Divide => self.each(at, |[a, b]| a / b),
-            Kind::Negate => self.each(at, |[a]| -a),
-            Kind::Root => self.each(at, |[a]| a.sqrt()),
-            Kind::Sign => self.each(at, |[a]| signed(1.0, a)),
-            Kind::Signed => self.each(at, |[a, b]| signed(b, a)),
-            Kind::ThreeSigned => self.three(at, |a, b| signed(b, a)),
-            Kind::TwoProducts => self.two(at, |a, b| a * b),
-            Kind::ThreeProducts => self.three(at, |a, b| a * b),
-            Kind::Direction => self.each(at, |[a, b]| a.atan2(b)),
-            Kind::Angle => self.angles(at),
-        }
+                for_each!(H, h, {
+                    when!(
+                        at,
+                        Kind::Both(F, G, H),
+                        self.each(at, |[a, b, c, d]| g(f(a, b), h(c, d)))
+                    );
+                });
+            });
+        });
+        when!(at, Kind::Divide, self.each(at, |[a, b]| a / b));
+        when!(at, Kind::Negate, self.each(at, |[a]| -a));
+        when!(at, Kind::Root, self.each(at, |[a]| a.sqrt()));
+        when!(at, Kind::Sign, self.each(at, |[a]| signed(1.0, a)));
+        when!(at, Kind::Signed, self.each(at, |[a, b]| signed(b, a)));
+        when!(at, Kind::ThreeSigned, self.three(at, |a, b| signed(b, a)));
+        when!(at, Kind::TwoProducts, self.two(at, |a, b| a * b));
+        when!(at, Kind::ThreeProducts, self.three(at, |a, b| a * b));
+        when!(at, Kind::Direction, self.each(at, |[a, b]| a.atan2(b)));
+        when!(at, Kind::Angle, self.angles(at));
     }
 
     #[inline(always)]

@@ -3,9 +3,9 @@
 //! A [`Program`] becomes a plan: a list of passes over a block, each of which computes one to three steps
 //! for all its samples at once, with the widest vectors that the processor has. The values of a number
 //! lie side by side (structure of arrays), and the overhead of interpretation is shared by the whole
-//! block. Numbers enter sample by sample, row-major; they are handed out block by block as they lie
-//! ([`Program::evaluate_blocks`]), or row-major too ([`Program::evaluate`]), which takes about as long
-//! again: a model has hundreds of numbers, and each has to be moved.
+//! block. Numbers enter sample by sample, row-major. They are handed out as they lie, soon after they are
+//! computed ([`Evaluator::evaluate_numbers`]), or row-major too ([`Evaluator::evaluate`]), which takes
+//! several times as long: a model has hundreds of numbers, and each has to be moved.
 
 mod fuse;
 mod inputs;
@@ -18,8 +18,8 @@ mod tests;
 mod trigonometry;
 mod turn;
 
-use crate::lowering::{Condition, Program, SINGULAR};
-use plan::{Output, Plan};
+use crate::lowering::{Condition, Guard, Program, SINGULAR};
+use plan::Plan;
 use std::cell::Cell;
 
 /// Samples per block: what a program has alive stays in the nearest caches.
@@ -27,6 +27,9 @@ pub const BLOCK: usize = 64;
 
 /// Numbers in a line of the cache.
 const LINE: usize = 8;
+
+/// Numbers of an output that are handed out at a time.
+const TOGETHER: usize = 16;
 
 /// A program whose condition failed at a sample.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,16 +42,6 @@ pub struct Failed {
     pub value: f64,
 }
 
-/// Memory of an evaluation, to be used again. It remembers the plan of its last program.
-#[derive(Debug, Default)]
-pub struct Workspace {
-    plan: Plan,
-    /// The slots of the plan, a block each, behind what aligns them.
-    memory: Vec<f64>,
-    start: usize,
-    single: Vec<f64>,
-}
-
 /// An input of a block: one row of numbers per sample, or one row for all.
 #[derive(Debug, Clone, Copy)]
 pub struct Rows<'a> {
@@ -58,41 +51,22 @@ pub struct Rows<'a> {
     pub shared: bool,
 }
 
-/// The numbers of an output over a block of samples.
+/// One number of an output at successive samples.
 #[derive(Debug, Clone, Copy)]
-pub struct Block<'a> {
-    outputs: &'a [Output],
-    slots: &'a [[f64; BLOCK]],
-    first: usize,
-    samples: usize,
-}
-
-impl<'a> Block<'a> {
+pub struct Number<'a> {
+    /// Which number of the output it is.
+    pub index: usize,
     /// The first sample.
-    #[must_use]
-    pub const fn first(&self) -> usize {
-        self.first
-    }
-
-    /// Number of samples, at most [`BLOCK`].
-    #[must_use]
-    pub const fn samples(&self) -> usize {
-        self.samples
-    }
-
-    /// The values at all samples of number `index` of the output, and the sign to give them: ±1. Numbers
-    /// that are equal but for the sign share their values.
-    #[must_use]
-    pub fn column(&self, index: usize) -> Option<(f64, &'a [f64])> {
-        let output = self.outputs.get(index)?;
-        let values = self.slots[output.slot].get(..self.samples)?;
-        Some((if output.negative { -1.0 } else { 1.0 }, values))
-    }
+    pub first: usize,
+    /// The sign to give to the values: ±1. Numbers that are equal but for the sign share their values.
+    pub sign: f64,
+    /// The values, at most [`BLOCK`].
+    pub values: &'a [f64],
 }
 
 impl Program {
     /// Evaluates the program at `samples` samples. Each input holds `len` numbers per sample (or once,
-    /// if shared); the output receives as many rows.
+    /// if shared); the output receives as many rows. An [`Evaluator`] does it again without preparation.
     ///
     /// # Errors
     /// The first sample at which a guard fails. Inputs and outputs of a wrong length are the caller's
@@ -102,89 +76,184 @@ impl Program {
         samples: usize,
         inputs: &[Rows<'_>],
         output: &mut [f64],
-        workspace: &mut Workspace,
     ) -> Result<(), Failed> {
-        if samples == 1 {
-            return single::evaluate(self, inputs, output, &mut workspace.single);
+        match samples {
+            1 => single::evaluate(self, inputs, output, &mut Vec::new()),
+            _ => Evaluator::new(self).evaluate(samples, inputs, output),
         }
-        let width = self.entries.len();
-        self.evaluate_blocks(samples, inputs, workspace, |block| {
-            let range = block.first * width..(block.first + block.samples) * width;
-            rows::write(&block, output.get_mut(range).unwrap_or_default());
-        })
+    }
+}
+
+/// A program that is ready to be evaluated, with the memory that this takes.
+#[derive(Debug)]
+pub struct Evaluator {
+    program: Program,
+    single: Vec<f64>,
+    rows: Option<Arena>,
+    numbers: Option<Arena>,
+}
+
+impl Evaluator {
+    /// Prepares a program. What is only needed for blocks is prepared with the first one.
+    #[must_use]
+    pub fn new(program: &Program) -> Self {
+        Self {
+            program: program.clone(),
+            single: Vec::new(),
+            rows: None,
+            numbers: None,
+        }
     }
 
-    /// Evaluates the program at `samples` samples, and hands out the numbers of its output block by block.
+    /// Evaluates the program at `samples` samples, as [`Program::evaluate`] does.
     ///
     /// # Errors
-    /// The first sample at which a guard fails; its block is not handed out. Inputs of a wrong length are
-    /// the caller's error and count as zeros.
-    pub fn evaluate_blocks(
-        &self,
+    /// The same.
+    pub fn evaluate(
+        &mut self,
         samples: usize,
         inputs: &[Rows<'_>],
-        workspace: &mut Workspace,
-        mut take: impl FnMut(Block<'_>),
+        output: &mut [f64],
     ) -> Result<(), Failed> {
-        workspace.prepare(self);
+        let program = &self.program;
+        if samples == 1 {
+            return single::evaluate(program, inputs, output, &mut self.single);
+        }
+        // Numbers of a row lie side by side, so they are moved when all are there.
+        let arena = self
+            .rows
+            .get_or_insert_with(|| Arena::new(program, usize::MAX));
+        let width = program.entries.len();
         for first in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - first);
-            let memory = &mut workspace.memory[workspace.start..];
-            let slots = Cell::from_mut(memory).as_slice_of_cells().as_chunks().0;
-            inputs::load(self, &workspace.plan, first, count, inputs, slots);
-            lanes::run(&workspace.plan, slots);
-            let block = Block {
-                outputs: &workspace.plan.outputs,
-                slots: workspace.memory[workspace.start..].as_chunks().0,
-                first,
+            arena.load(program, first, count, inputs);
+            for stage in 0..arena.plan.stages.len() {
+                arena.run(stage);
+            }
+            let slots = arena.values();
+            check(&program.guards, &arena.plan.guards, slots, first, count)?;
+            let block = rows::Block {
+                outputs: &arena.plan.outputs,
+                slots,
                 samples: count,
             };
-            self.check(&workspace.plan.guards, &block)?;
-            take(block);
+            let range = first * width..(first + count) * width;
+            rows::write(&block, output.get_mut(range).unwrap_or_default());
         }
         Ok(())
     }
 
-    fn check(&self, guards: &[plan::Slot], block: &Block<'_>) -> Result<(), Failed> {
-        let mut first: Option<Failed> = None;
-        for (index, (guard, slot)) in self.guards.iter().zip(guards).enumerate() {
-            let values = &block.slots[*slot][..block.samples];
-            if guard.condition.holds_for_all(values) {
-                continue;
+    /// Evaluates the program at `samples` samples, and hands out its numbers soon after they are computed,
+    /// while they are in the nearest cache: block by block, the numbers of a block in no particular order.
+    ///
+    /// # Errors
+    /// The first sample at which a guard fails; what was handed out of its block is not valid. Inputs of a
+    /// wrong length are the caller's error and count as zeros.
+    pub fn evaluate_numbers(
+        &mut self,
+        samples: usize,
+        inputs: &[Rows<'_>],
+        mut take: impl FnMut(Number<'_>),
+    ) -> Result<(), Failed> {
+        let program = &self.program;
+        let arena = self
+            .numbers
+            .get_or_insert_with(|| Arena::new(program, TOGETHER));
+        for first in (0..samples).step_by(BLOCK) {
+            let count = BLOCK.min(samples - first);
+            arena.load(program, first, count, inputs);
+            for stage in 0..arena.plan.stages.len() {
+                arena.run(stage);
+                let slots = arena.values();
+                for output in &arena.plan.outputs[arena.plan.stages[stage].outputs.clone()] {
+                    take(Number {
+                        index: output.index,
+                        first,
+                        sign: if output.negative { -1.0 } else { 1.0 },
+                        values: &slots[output.slot][..count],
+                    });
+                }
             }
-            let failed = values.iter().position(|v| !guard.condition.holds(*v));
-            let earlier = |lane: &usize| {
-                let sample = block.first + lane;
-                first.as_ref().is_none_or(|f| sample < f.sample)
-            };
-            if let Some(lane) = failed.filter(earlier) {
-                first = Some(Failed {
-                    sample: block.first + lane,
-                    guard: index,
-                    value: values[lane],
-                });
-            }
+            let slots = arena.values();
+            check(&program.guards, &arena.plan.guards, slots, first, count)?;
         }
-        first.map_or(Ok(()), Err)
+        Ok(())
     }
 }
 
-impl Workspace {
-    /// Makes the memory fit a program.
-    fn prepare(&mut self, program: &Program) {
-        if self.plan.is_of(program) {
-            return;
-        }
-        self.plan = Plan::new(program);
-        self.memory = vec![0.0; self.plan.slots * BLOCK + LINE];
+/// The slots of a plan, a block each.
+#[derive(Debug)]
+struct Arena {
+    plan: Plan,
+    /// The slots, behind what aligns them.
+    memory: Vec<f64>,
+    start: usize,
+}
+
+impl Arena {
+    /// Memory for a program whose numbers are handed out when `together` of them are there.
+    fn new(program: &Program, together: usize) -> Self {
+        let plan = Plan::new(program, together);
+        let mut memory = vec![0.0; plan.slots * BLOCK + LINE];
         // Vectors that lie across two lines of the cache take twice the time.
-        self.start = self.memory.as_ptr().align_offset(LINE * size_of::<f64>());
-        self.start = self.start.min(LINE);
-        let slots = self.memory[self.start..].as_chunks_mut::<BLOCK>().0;
-        for &(slot, value) in &self.plan.constants {
+        let start = memory.as_ptr().align_offset(LINE * size_of::<f64>());
+        let start = start.min(LINE);
+        let slots = memory[start..].as_chunks_mut::<BLOCK>().0;
+        for &(slot, value) in &plan.constants {
             slots[slot].fill(value);
         }
+        Self {
+            plan,
+            memory,
+            start,
+        }
     }
+
+    /// Takes the inputs at `count` samples from number `first` on.
+    fn load(&mut self, program: &Program, first: usize, count: usize, inputs: &[Rows<'_>]) {
+        let memory = Cell::from_mut(&mut self.memory[self.start..]);
+        let slots = memory.as_slice_of_cells().as_chunks().0;
+        inputs::load(program, &self.plan, first, count, inputs, slots);
+    }
+
+    /// Runs the passes of a stage.
+    fn run(&mut self, stage: usize) {
+        let memory = Cell::from_mut(&mut self.memory[self.start..]);
+        let slots = memory.as_slice_of_cells().as_chunks().0;
+        let passes = self.plan.stages[stage].passes.clone();
+        lanes::run(&self.plan.passes[passes], slots);
+    }
+
+    fn values(&self) -> &[[f64; BLOCK]] {
+        self.memory[self.start..].as_chunks().0
+    }
+}
+
+/// The guards, whose values are in `places`, at `count` samples from number `start` on.
+fn check(
+    guards: &[Guard],
+    places: &[plan::Slot],
+    slots: &[[f64; BLOCK]],
+    start: usize,
+    count: usize,
+) -> Result<(), Failed> {
+    let mut first: Option<Failed> = None;
+    for (index, (guard, slot)) in guards.iter().zip(places).enumerate() {
+        let values = &slots[*slot][..count];
+        if guard.condition.holds_for_all(values) {
+            continue;
+        }
+        let failed = values.iter().position(|v| !guard.condition.holds(*v));
+        let earlier = |lane: &usize| first.as_ref().is_none_or(|f| start + lane < f.sample);
+        if let Some(lane) = failed.filter(earlier) {
+            first = Some(Failed {
+                sample: start + lane,
+                guard: index,
+                value: values[lane],
+            });
+        }
+    }
+    first.map_or(Ok(()), Err)
 }
 
 impl Condition {

@@ -1,11 +1,12 @@
 //! A program made ready for blocks: passes over a block, and the memory that values take.
 //!
 //! A value gets a slot of the arena, which is free again after the last use, so that what is alive at a
-//! time stays in the nearest cache. Numbers of the output keep theirs until the end of the block.
+//! time stays in the nearest cache. Numbers of the output are handed out soon after they are computed, for
+//! the same reason: a model has hundreds of them.
 
-use super::fuse::{Draft, Kind, RESULTS, Value, drafts};
-use crate::lowering::{Entry, Operation, Program, Source};
-use std::collections::HashMap;
+use super::fuse::{Draft, RESULTS, Value, drafts};
+use crate::lowering::Program;
+use std::{collections::HashMap, ops::Range};
 
 /// A slot of the arena, which holds the values of one number over a block.
 pub(super) type Slot = usize;
@@ -13,7 +14,7 @@ pub(super) type Slot = usize;
 /// One pass over a block: one to three steps of the program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pass {
-    pub(super) kind: Kind,
+    pub(super) code: u8,
     pub(super) operands: [Slot; 4],
     /// Where the results go.
     pub(super) results: [Slot; RESULTS],
@@ -30,100 +31,113 @@ pub(super) struct Load {
 /// A number of the output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Output {
+    /// Which one it is.
+    pub(super) index: usize,
     pub(super) slot: Slot,
     /// Whether its negative is meant.
     pub(super) negative: bool,
 }
 
+/// Some passes, and the numbers of the output that are handed out after them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Stage {
+    pub(super) passes: Range<usize>,
+    pub(super) outputs: Range<usize>,
+}
+
 /// A program made ready for blocks.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) passes: Vec<Pass>,
+    pub(super) stages: Vec<Stage>,
     pub(super) constants: Vec<(Slot, f64)>,
     pub(super) loads: Vec<Load>,
+    /// In the order in which they are handed out.
     pub(super) outputs: Vec<Output>,
     pub(super) guards: Vec<Slot>,
     /// Slots of the arena.
     pub(super) slots: usize,
-    /// What the plan was made of.
-    operations: Vec<Operation>,
-    entries: Vec<Entry>,
-    guarded: Vec<Source>,
 }
 
 impl Plan {
-    /// Makes a program ready.
-    pub(super) fn new(program: &Program) -> Self {
+    /// Makes a program ready whose numbers are handed out when `together` of them are there.
+    pub(super) fn new(program: &Program, together: usize) -> Self {
         let drafts = drafts(program);
         let mut planner = Planner::new(program, &drafts);
-        for (number, draft) in drafts.iter().enumerate() {
-            planner.pass(number, draft);
+        let mut outputs: HashMap<Value, Vec<usize>> = HashMap::new();
+        for (index, entry) in program.entries.iter().enumerate() {
+            let value = Value::of(entry.source);
+            outputs.entry(value).or_default().push(index);
         }
-        planner.finish(program)
-    }
-
-    /// Whether the plan is that of a program.
-    pub(super) fn is_of(&self, program: &Program) -> bool {
-        let operations = program.steps.iter().map(|s| &s.operation);
-        let guarded = program.guards.iter().map(|g| &g.source);
-        self.entries == program.entries
-            && operations.eq(&self.operations)
-            && guarded.eq(&self.guarded)
+        for draft in &drafts {
+            planner.pass(draft);
+            let results = draft.results.iter().flatten();
+            let computed = results.filter_map(|value| outputs.remove(value));
+            planner.waiting.extend(computed.flatten());
+            if planner.waiting.len() >= together {
+                planner.hand_out();
+            }
+        }
+        // What is not computed: constants and inputs.
+        planner.waiting.extend(outputs.into_values().flatten());
+        planner.hand_out();
+        planner.finish()
     }
 }
 
-/// Gives out slots.
-struct Planner {
+/// Gives out slots, in the order of the passes.
+struct Planner<'p> {
+    program: &'p Program,
     plan: Plan,
     slots: HashMap<Value, Slot>,
     free: Vec<Slot>,
-    /// The last pass that needs a value; `usize::MAX` for what is needed at the end.
-    last: HashMap<Value, usize>,
+    /// How often a value is still needed, by passes, by the output and by guards.
+    needed: HashMap<Value, usize>,
+    /// The numbers of the output that are computed, and not handed out yet.
+    waiting: Vec<usize>,
 }
 
-impl Planner {
-    fn new(program: &Program, drafts: &[Draft]) -> Self {
-        let mut last = HashMap::new();
-        for (number, draft) in drafts.iter().enumerate() {
-            last.extend(draft.operands.iter().map(|&value| (value, number)));
-        }
+impl<'p> Planner<'p> {
+    fn new(program: &'p Program, drafts: &[Draft]) -> Self {
+        let operands = drafts.iter().flat_map(|draft| &draft.operands).copied();
         let entries = program.entries.iter().map(|e| e.source);
         let kept = entries.chain(program.guards.iter().map(|g| g.source));
-        last.extend(kept.map(|source| (Value::of(source), usize::MAX)));
+        let mut needed = HashMap::new();
+        for value in operands.chain(kept.map(Value::of)) {
+            *needed.entry(value).or_default() += 1;
+        }
         Self {
+            program,
             plan: Plan::default(),
             slots: HashMap::new(),
             free: Vec::new(),
-            last,
+            needed,
+            waiting: Vec::new(),
         }
     }
 
-    fn pass(&mut self, number: usize, draft: &Draft) {
+    fn pass(&mut self, draft: &Draft) {
         let mut operands = [0; 4];
         for (slot, &value) in operands.iter_mut().zip(&draft.operands) {
             *slot = self.slot(value);
         }
         // A result may take the place of an operand that ends here: all is read before it is written.
-        for &value in &draft.operands {
-            if value.is_computed() && self.last.get(&value) == Some(&number) {
-                self.release(value);
-            }
-        }
+        draft.operands.iter().for_each(|&value| self.used(value));
         let results = draft.results.map(|value| self.result(value));
-        for value in draft.results.into_iter().flatten() {
-            if !self.last.contains_key(&value) {
-                self.release(value);
-            }
-        }
         self.plan.passes.push(Pass {
-            kind: draft.kind,
+            code: draft.kind.code(),
             operands,
             results,
         });
     }
 
-    fn release(&mut self, value: Value) {
-        self.free.extend(self.slots.remove(&value));
+    /// A value is needed once less; where it is needed no more, its slot is free again.
+    fn used(&mut self, value: Value) {
+        let needed = self.needed.entry(value).or_default();
+        *needed = needed.saturating_sub(1);
+        if *needed == 0 && value.is_computed() {
+            self.free.extend(self.slots.remove(&value));
+        }
     }
 
     /// The slot of a value that is there; constants and inputs get theirs when they are first needed.
@@ -151,7 +165,7 @@ impl Planner {
     /// The slot of a result; one that nothing needs goes to a slot that is free.
     fn result(&mut self, value: Option<Value>) -> Slot {
         let slot = self.free.pop().unwrap_or_else(|| self.fresh());
-        match value {
+        match value.filter(|value| self.needed.contains_key(value)) {
             Some(value) => {
                 self.slots.insert(value, slot);
             }
@@ -160,19 +174,33 @@ impl Planner {
         slot
     }
 
-    fn finish(mut self, program: &Program) -> Plan {
-        let outputs = program.entries.iter().map(|entry| Output {
-            slot: self.slot(Value::of(entry.source)),
-            negative: entry.negative,
+    /// Ends a stage with the numbers that wait.
+    fn hand_out(&mut self) {
+        let ends = |stage: &Stage| (stage.passes.end, stage.outputs.end);
+        let (pass, output) = self.plan.stages.last().map_or((0, 0), ends);
+        self.waiting.sort_unstable();
+        for index in std::mem::take(&mut self.waiting) {
+            let entry = self.program.entries[index];
+            let value = Value::of(entry.source);
+            let slot = self.slot(value);
+            self.plan.outputs.push(Output {
+                index,
+                slot,
+                negative: entry.negative,
+            });
+            self.used(value);
+        }
+        self.plan.stages.push(Stage {
+            passes: pass..self.plan.passes.len(),
+            outputs: output..self.plan.outputs.len(),
         });
-        self.plan.outputs = outputs.collect();
-        let guards = program.guards.iter().map(|g| Value::of(g.source));
+    }
+
+    fn finish(mut self) -> Plan {
+        let guards = self.program.guards.iter().map(|g| Value::of(g.source));
         self.plan.guards = guards.map(|value| self.slot(value)).collect();
         // Inputs of one array are loaded together.
         self.plan.loads.sort_by_key(|load| (load.array, load.index));
-        self.plan.operations = program.steps.iter().map(|s| s.operation).collect();
-        self.plan.entries.clone_from(&program.entries);
-        self.plan.guarded = program.guards.iter().map(|g| g.source).collect();
         self.plan
     }
 }

@@ -3,8 +3,16 @@
 
 use super::plan::Output;
 use super::turn::{Plain, SIDE, Turn};
-use super::{BLOCK, Block, LINE};
+use super::{BLOCK, LINE};
 use pulp::NullaryFnOnce;
+
+/// The numbers of an output over a block, all there, in their order.
+#[derive(Clone, Copy)]
+pub(super) struct Block<'a> {
+    pub(super) outputs: &'a [Output],
+    pub(super) slots: &'a [[f64; BLOCK]],
+    pub(super) samples: usize,
+}
 
 /// Writes a block as rows, one for every sample.
 pub(super) fn write(block: &Block<'_>, rows: &mut [f64]) {

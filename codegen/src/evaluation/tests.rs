@@ -1,6 +1,6 @@
 //! Blocks against single samples, on a program of every operation in every fused form.
 
-use super::{BLOCK, Rows, Workspace};
+use super::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
 
 fn array(name: &str, len: usize) -> Array {
@@ -95,17 +95,17 @@ fn rows(values: &[f64], shared: bool) -> Rows<'_> {
 fn blocks_give_what_single_samples_give() {
     let program = program();
     let width = program.entries.len();
-    let mut workspace = Workspace::default();
+    let mut evaluator = Evaluator::new(&program);
     for samples in [2, 3, BLOCK, BLOCK + 1, 3 * BLOCK + 7] {
         let states = states(samples);
         let inputs = [rows(&states, false), rows(&[1.7], true)];
         let mut together = vec![f64::NAN; samples * width];
-        let done = program.evaluate(samples, &inputs, &mut together, &mut workspace);
+        let done = evaluator.evaluate(samples, &inputs, &mut together);
         assert_eq!(done, Ok(()));
         for (state, found) in states.chunks(2).zip(together.chunks(width)) {
             let inputs = [rows(state, false), rows(&[1.7], true)];
             let mut alone = vec![f64::NAN; width];
-            let done = program.evaluate(1, &inputs, &mut alone, &mut Workspace::default());
+            let done = program.evaluate(1, &inputs, &mut alone);
             assert_eq!(done, Ok(()));
             for (column, (a, b)) in found.iter().zip(&alone).enumerate() {
                 let close = (a - b).abs() <= 1e-13 * b.abs().max(1.0);
@@ -116,21 +116,31 @@ fn blocks_give_what_single_samples_give() {
 }
 
 #[test]
-fn a_workspace_serves_another_program() {
-    let (first, mut second) = (program(), program());
-    second.entries.reverse();
-    let width = first.entries.len();
-    let states = states(5);
-    let inputs = [rows(&states, false), rows(&[1.7], true)];
-    let mut workspace = Workspace::default();
-    let mut outputs = [&first, &second].map(|program| {
-        let mut output = vec![0.0; 5 * width];
-        let done = program.evaluate(5, &inputs, &mut output, &mut workspace);
+fn numbers_are_handed_out_once_each_and_are_those_of_rows() {
+    let program = program();
+    let width = program.entries.len();
+    let mut evaluator = Evaluator::new(&program);
+    for samples in [1, 5, BLOCK, 2 * BLOCK + 3] {
+        let states = states(samples);
+        let inputs = [rows(&states, false), rows(&[1.7], true)];
+        let mut expected = vec![f64::NAN; samples * width];
+        // Two samples at least: a single one has sines and cosines of another library.
+        let twice = [states.as_slice(), &states].concat();
+        let more = [rows(&twice, false), rows(&[1.7], true)];
+        expected.resize(2 * samples * width, f64::NAN);
+        let done = evaluator.evaluate(2 * samples, &more, &mut expected);
         assert_eq!(done, Ok(()));
-        output
-    });
-    outputs[1].chunks_mut(width).for_each(<[f64]>::reverse);
-    assert_eq!(outputs[0], outputs[1]);
+        let mut found = vec![f64::NAN; samples * width];
+        let done = evaluator.evaluate_numbers(samples, &inputs, |number| {
+            for (k, value) in number.values.iter().enumerate() {
+                let place = &mut found[(number.first + k) * width + number.index];
+                assert!(place.is_nan(), "handed out twice");
+                *place = number.sign * value;
+            }
+        });
+        assert_eq!(done, Ok(()));
+        assert_eq!(found, expected[..samples * width]);
+    }
 }
 
 #[test]
@@ -144,7 +154,7 @@ fn the_first_sample_that_fails_is_named() {
     let inputs = [rows(&states, false), rows(&[1.7], true)];
     let mut output = vec![0.0; states.len() / 2 * program.entries.len()];
     let samples = states.len() / 2;
-    let done = program.evaluate(samples, &inputs, &mut output, &mut Workspace::default());
+    let done = program.evaluate(samples, &inputs, &mut output);
     assert!(
         matches!(&done, Err(failed) if failed.sample == BLOCK + 5),
         "{done:?}"

@@ -4,7 +4,7 @@
 use super::precise::{Precise, difference, rounded};
 use super::{Failure, description};
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::evaluation::{Rows, Workspace};
+use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::states::{Stream, pose_towards, random_states};
@@ -206,7 +206,7 @@ fn value(program: &Program, inputs: &[Vec<f64>]) -> Option<Vec<f64>> {
         })
         .collect();
     let mut output = vec![0.0; program.output.len()];
-    let evaluated = program.evaluate(1, &rows, &mut output, &mut Workspace::default());
+    let evaluated = program.evaluate(1, &rows, &mut output);
     evaluated.ok().map(|()| output)
 }
 

@@ -3,7 +3,7 @@
 use super::{Failure, Sample};
 use nalgebra::DMatrix;
 use overact_codegen::RobotModel;
-use overact_codegen::evaluation::{Rows, Workspace};
+use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Program;
 
 /// Something that computes a robot's functions by name.
@@ -67,7 +67,7 @@ pub fn evaluate<'a>(
     let inputs = rows.collect::<Result<Vec<_>, Failure>>()?;
     let mut output = vec![0.0; program.output.len()];
     program
-        .evaluate(1, &inputs, &mut output, &mut Workspace::default())
+        .evaluate(1, &inputs, &mut output)
         .map_err(|failed| format!("`{}`: {failed:?}", program.output.name))?;
     Ok(output)
 }
