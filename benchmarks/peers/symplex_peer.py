@@ -21,7 +21,8 @@ def program():
 
 
 class Operand:
-    """A symbol, a number, or the name of the line that computes it; operations add lines."""
+    """A symbol, a number, or the name of the line that computes it. An operation adds a line, unless there is
+    one for it already."""
 
     def __init__(self, lines, name):
         self.lines, self.name = lines, name
@@ -30,9 +31,9 @@ class Operand:
         return self.name
 
     def operation(self, operator, *operands):
-        name = f"line{len(self.lines)}"
-        self.lines.append(" ".join([name, operator, *map(str, operands)]))
-        return Operand(self.lines, name)
+        words = map(str, operands)
+        line = " ".join([operator, *(sorted(words) if operator in ("add", "mul") else words)])
+        return Operand(self.lines, self.lines.setdefault(line, f"line{len(self.lines)}"))
 
     def __neg__(self):
         return self.operation("neg", self)
@@ -66,7 +67,8 @@ class Module:
     """What `Trees` asks of a module with SymPy's names."""
 
     def __init__(self):
-        self.lines = []
+        #: The names of lines, by their operations.
+        self.lines = {}
 
     def Symbol(self, name):
         return Operand(self.lines, name)
@@ -88,7 +90,8 @@ class Module:
 
     def cse(self, entries, symbols):
         """Shared expressions, under symplex's names, and the entries, as trees of SymPy."""
-        text = "\n".join([*self.lines, *(f"output {entry}" for entry in entries)])
+        lines = [f"{name} {line}" for line, name in self.lines.items()]
+        text = "\n".join([*lines, *(f"output {entry}" for entry in entries)])
         done = subprocess.run([program()], input=text, capture_output=True, text=True)
         if done.returncode:
             raise RuntimeError(f"symplex: {done.stderr.strip()}")
