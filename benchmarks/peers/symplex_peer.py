@@ -111,9 +111,6 @@ def tree(node):
             return sympy.Add(*map(tree, terms), evaluate=False)
         case {"type": "Mul", "factors": factors}:
             return sympy.Mul(*map(tree, factors), evaluate=False)
-        case {"type": "Neg", "inner": inner}:
-            inner = tree(inner)
-            return sympy.Mul(-1, *(inner.args if inner.is_Mul else [inner]), evaluate=False)
         case {"type": "Pow", "base": base, "exp": exponent}:
             return sympy.Pow(tree(base), tree(exponent), evaluate=False)
         case {"type": "Sqrt", "arg": argument}:

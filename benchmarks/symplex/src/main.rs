@@ -67,10 +67,7 @@ fn read(text: &str) -> Result<Vec<(String, Ex)>, Box<dyn Error>> {
                     .collect::<Result<Vec<_>, _>>()?;
                 let mut value = apply(operator, &operands)
                     .ok_or_else(|| format!("`{}` is no operation", line.join(" ")))?;
-                let is_simple = matches!(
-                    value.expr_type(),
-                    ExprType::Symbol | ExprType::Number | ExprType::Neg
-                );
+                let is_simple = is_atom(&value) || is_atom(&-&value);
                 if !is_simple && uses.get(name).is_some_and(|&times| times > 1) {
                     value = names
                         .entry(value.id())
@@ -90,6 +87,11 @@ fn read(text: &str) -> Result<Vec<(String, Ex)>, Box<dyn Error>> {
         }
     }
     Ok(found)
+}
+
+/// Whether an expression has no operation.
+fn is_atom(expression: &Ex) -> bool {
+    matches!(expression.expr_type(), ExprType::Symbol | ExprType::Number)
 }
 
 /// How often the outputs, and what they need, use each operand.
