@@ -9,6 +9,7 @@ from .casadi_peer import Casadi
 from .count import Count
 from .robot import columns
 from .search import best
+from .symplex_peer import symplex_trees
 from .tree_peer import symforce_trees, sympy_trees
 
 #: Largest difference of results, relative to the largest entry of a row.
@@ -39,7 +40,7 @@ def check(title, found, expected):
 
 def models(work, function, robot, sample, expected, candidates=3):
     """The peers' models, all proved to agree: CasADi's in its best forms, with and without `cse`, those of
-    SymPy and SymForce, whose `cse` is alike, in the best of these."""
+    SymPy, SymForce and symplex, whose `cse` is alike, in the best of these."""
     found = []
     homes = function.document["home_joints"]
     forms = best(robot, function.inputs, function.columns, homes)[:candidates]
@@ -53,7 +54,7 @@ def models(work, function, robot, sample, expected, candidates=3):
             check(f"{work.title}, {title}", np.array(values).reshape(expected.shape), expected)
             code = casadi_peer.c_code(compiled)
             found.append(Model(title, str(form), casadi_peer.count(compiled), code))
-    for make in (sympy_trees, symforce_trees):
+    for make in (sympy_trees, symforce_trees, symplex_trees):
         algebra = make()
         derived = columns(robot, algebra, function.inputs, function.columns, forms[0], homes)
         counted, code = algebra.function(function.inputs, derived)
