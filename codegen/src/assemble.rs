@@ -67,7 +67,21 @@ pub fn program(
         &derived.entries,
         &guards,
         effort(selection.effort, family),
+        &|symbol| at_home(mechanism, symbol),
     ))
+}
+
+/// The value of an input, by its symbol `name[index]`, in the home configuration; rates have none.
+fn at_home(mechanism: &Mechanism, symbol: &str) -> Option<f64> {
+    let (name, index) = symbol.strip_suffix(']')?.split_once('[')?;
+    let home = &mechanism.home;
+    let values = match name {
+        "pose" => &home.pose,
+        "joints" => &home.joints,
+        "actuators" => &home.actuators,
+        _ => return None,
+    };
+    values.get(index.parse::<usize>().ok()?).copied()
 }
 
 /// The effort that a function is worth: the identification models, which run at every sample of

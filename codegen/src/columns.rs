@@ -9,7 +9,7 @@ use crate::derivation::{
     BodyParameter, Columns, Combination, Family, Formulation, From, JointsBy, Robot, Selection,
     Underivable, derive,
 };
-use crate::evaluation::Rows;
+use crate::evaluation::{Evaluator, Rows};
 use crate::lowering::{Effort, Program, Source};
 use crate::mechanism::{BaseColumns, Mechanism};
 use crate::states::{State, random_states};
@@ -145,9 +145,19 @@ pub fn sample(program: &Program, states: &[State], rows: usize, columns: usize) 
             shared: false,
         })
         .collect();
-    let mut output = vec![0.0; states.len() * rows * columns];
-    // Regular states by construction: a guard that fails all the same leaves zeros, which count for
+    let mut sampled = DMatrix::zeros(states.len() * rows, columns);
+    // Regular states by construction: where a guard fails all the same, the rest stays zero and counts for
     // nothing.
-    let _ = program.evaluate(states.len(), &inputs, &mut output);
-    DMatrix::from_row_slice(states.len() * rows, columns, &output)
+    let _ = Evaluator::new(program).evaluate_numbers(states.len(), &inputs, |number| {
+        let (row, column) = (number.index / columns, number.index % columns);
+        let mut column = sampled.column_mut(column);
+        let places = column
+            .iter_mut()
+            .skip(number.first * rows + row)
+            .step_by(rows);
+        places
+            .zip(number.values)
+            .for_each(|(place, value)| *place = number.sign * value);
+    });
+    sampled
 }

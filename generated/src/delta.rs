@@ -2093,7 +2093,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 653 operations (194 additions, 453 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 539 intermediates.
+    /// 653 operations (192 additions, 455 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 539 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2128,7 +2128,6 @@ impl Delta {
         let rate_arm_leg1 = t11
             * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t24);
         let t27 = rate_arm_leg1 * rate_arm_leg1;
-        let t29 = 0.56 * c_rod_leg1;
         let grod_vy_leg1 = 1.7857142857142858 * t22;
         let t35 = t16 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
@@ -2138,7 +2137,7 @@ impl Delta {
         let t39 = rate_rod_leg1 * rate_rod_leg1;
         let t45 = acceleration[1] + t24 * rate_rod_leg1;
         let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t16 * t27 + t29 * (t37 + t39) + t23 * t45;
+            + t16 * t27 + 0.56 * c_rod_leg1 * (t37 + t39) + t23 * t45;
         let rate_dot_arm_leg1 = t11 * t47;
         let t49 = garm_vx_leg1 * rate_dot_arm_leg1;
         let garm_vy_leg1 = t11 * t23;
@@ -2149,336 +2148,310 @@ impl Delta {
         let t58 = 9.81 * s_arm_leg1;
         let t68 = t10 * grod_vy_leg1;
         let minus_gcross_vx_leg1 = c_arm_leg1 * t68;
-        let t71 = rate_rod_leg1 * (1.7857142857142858 * t35);
-        let t72 = 0.24 * rate_dot_arm_leg1;
-        let t77 = 0.24 * s_cross_leg1;
-        let t79 = t24 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t72 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t77 * t27 + t79 + t79);
+        let t70 = 1.7857142857142858 * t35;
+        let t71 = rate_rod_leg1 * t70;
+        let t72 = 0.24 * s_cross_leg1;
+        let t74 = 0.24 * rate_dot_arm_leg1;
+        let t80 = t72 * t27 + c_cross_leg1 * t74 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2];
+        let t81 = t24 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t80 + t81 + t81);
         let t85 = s_rod_leg1 * minus_rate_dot_cross_leg1;
         let t87 = t71 + t85 + t71;
         let t88 = s_rod_leg1 * t87;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t93 = t23 * t35;
-        let t95 = 3.188775510204082 * (minus_rate_cross_leg1 * t93);
+        let t93 = t70 * t70;
+        let t94 = t23 * t93;
+        let t95 = grod_vy_leg1 * t94;
         let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t68;
         let t99 = t88 - minus_rate_dot_cross_leg1;
         let t102 = t23 * t99 - c_rod_leg1 * t87;
-        let t104 = t93 * t93;
-        let t112 = t29 * t95;
+        let t104 = t23 * t94;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t116 = 3.188775510204082 * t104;
-        let t119 = s_rod_leg1 * (t112 + rate_dot_rod_leg1) + c_rod_leg1 * (t39 - t116);
-        let t125 = minus_gcross_vx_leg1 * t99;
-        let t127 = t95 - minus_gcross_vy_leg1 * t99;
-        let t128 = minus_minus_gcross_vz_leg1 * t99;
-        let t129 = 1.7857142857142858 * acceleration[1];
-        let t135 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t136 = 1.7857142857142858 * acceleration[0];
-        let t137 = t72 - t54;
-        let t138 = 0.24 * t137;
-        let t139 = garm_vx_leg1 * t138;
-        let t145 = garm_vy_leg1 * t138;
-        let t153 = acceleration[2] + 9.81;
-        let t154 = 1.7857142857142858 * t153;
-        let t155 = minus_garm_vz_leg1 * t138;
-        let t169 = t77 * (c_rod_leg1 * (t112 - rate_dot_rod_leg1))
-            + t77 * s_rod_leg1 * (t116 + t39) + t16 * t87;
-        let t172 = t58 + 0.24 * t27;
-        let t176 = s_rod_leg1 * (s_cross_leg1 * t172 + c_cross_leg1 * t137);
-        let t184 = s_cross_leg1 * t137 - c_cross_leg1 * t172;
-        let t192 = t16 * t37 - t77 * minus_rate_dot_cross_leg1;
-        let t204 = 1.0 / s_cross_leg2;
-        let t205 = 4.166666666666667 * t204;
+        let t111 = t94 + rate_dot_rod_leg1;
+        let t115 = s_rod_leg1 * t111 + c_rod_leg1 * (t39 - t104);
+        let t125 = 1.7857142857142858 * acceleration[1];
+        let t134 = c_rod_leg1 * t72;
+        let t137 = t72 * s_rod_leg1;
+        let t140 = 0.42857142857142855 * (c_cross_leg1 * t80) + t134 * (t93 + t39)
+            + t137 * t111;
+        let t143 = t58 + 0.24 * t27;
+        let t145 = t74 - t54;
+        let t147 = s_cross_leg1 * t143 + c_cross_leg1 * t145;
+        let t148 = c_rod_leg1 * t147;
+        let t152 = 0.24 * t145;
+        let t153 = garm_vy_leg1 * t152;
+        let t165 = t134 * (t94 - rate_dot_rod_leg1) + t137 * (t104 + t39) + t16 * t87;
+        let t167 = s_rod_leg1 * t147;
+        let t175 = s_cross_leg1 * t145 - c_cross_leg1 * t143;
+        let t183 = t16 * t37 - t72 * minus_rate_dot_cross_leg1;
+        let t197 = 1.0 / s_cross_leg2;
+        let t198 = 4.166666666666667 * t197;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t214 = 0.5 * c_armcross_leg2;
-        let t217 = 1.0 / c_rod_leg2;
-        let t218 = s_rod_leg2 * t217;
-        let minus_garm_vx_leg2 = t205 * (t214 + 0.8660254037844387 * t218);
-        let t222 = 0.8660254037844387 * c_armcross_leg2;
-        let t228 = 0.24 * c_cross_leg2;
-        let t234 = 0.8660254037844387 * twist[0];
-        let t235 = 0.5 * twist[1];
-        let t236 = t234 + t235;
-        let t237 = t218 * t236;
-        let rate_arm_leg2 = t205
-            * (t222 * twist[1] - t214 * twist[0] - s_armcross_leg2 * twist[2] - t237);
-        let t240 = rate_arm_leg2 * rate_arm_leg2;
-        let t243 = 1.7857142857142858 * t217;
-        let minus_rate_rod_leg2 = t243 * t236;
-        let t245 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t246 = 0.5 * s_armcross_leg2;
-        let t248 = 0.8660254037844387 * s_armcross_leg2;
-        let t254 = t246 * twist[0] - t248 * twist[1] - c_armcross_leg2 * twist[2]
-            - t228 * rate_arm_leg2;
-        let rate_cross_leg2 = t243 * t254;
-        let t256 = rate_cross_leg2 * rate_cross_leg2;
-        let t260 = t222 * acceleration[1] - t214 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t228 * t240
-            + 0.56 * c_rod_leg2 * (t245 + t256);
-        let t261 = 0.8660254037844387 * acceleration[0];
-        let t262 = 0.5 * acceleration[1];
-        let t263 = t261 + t262;
-        let t265 = t263 - t237 * minus_rate_rod_leg2;
-        let rate_dot_arm_leg2 = t205 * (t260 - t218 * t265);
-        let t269 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t205 * (t222 - 0.5 * t218);
-        let t273 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t205;
-        let t275 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t276 = 9.81 * c_arm_leg2;
-        let t280 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = t243 * (t246 + minus_garm_vx_leg2 * t228);
-        let t298 = 0.24 * s_cross_leg2;
-        let t300 = t237 * rate_cross_leg2;
-        let t304 = 0.24 * rate_dot_arm_leg2;
-        let t306 = t246 * acceleration[0] - t248 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t298 * t240 + t300 + t300)
-            - c_cross_leg2 * t304;
-        let rate_dot_cross_leg2 = t243 * t306;
-        let t308 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t309 = 1.7857142857142858 * t254;
-        let t310 = minus_rate_rod_leg2 * t309;
-        let t312 = t308 - t310 - t310;
-        let t313 = s_rod_leg2 * t312;
-        let t315 = s_rod_leg2 * rate_cross_leg2;
-        let t316 = 0.56 * t315;
-        let t317 = rate_cross_leg2 * t316;
-        let t318 = 2.76156059880242 * t317;
-        let minus_gcross_vy_leg2 = t243 * (t248 + t228 * garm_vy_leg2);
-        let t324 = 1.594387755102041 * t317;
-        let gcross_vz_leg2 = t243 * (t204 * s_arm_leg2);
-        let t329 = rate_dot_cross_leg2 - t313;
-        let t332 = t218 * t329 + c_rod_leg2 * t312;
-        let t334 = t316 * t316;
-        let t337 = t217 * (t334 - t254 * t254);
-        let t344 = t309 * t315;
-        let minus_rate_dot_rod_leg2 = t243 * t265;
-        let t348 = 3.188775510204082 * t334;
-        let t351 = s_rod_leg2 * (t344 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t245 - t348);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t217;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t217;
-        let t362 = gcross_vx_leg2 * t329 - t318;
-        let t364 = minus_gcross_vy_leg2 * t329 + t324;
-        let t365 = gcross_vz_leg2 * t329;
-        let t366 = 1.7857142857142858 * t263;
-        let t374 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t375 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
-        let t377 = t304 - t276;
-        let t378 = 0.24 * t377;
-        let t379 = minus_garm_vx_leg2 * t378;
-        let t386 = garm_vy_leg2 * t378;
-        let t395 = minus_garm_vz_leg2 * t378;
-        let t402 = t280 + 0.24 * t240;
-        let t404 = s_cross_leg2 * t377 - c_cross_leg2 * t402;
-        let t414 = t298 * (c_rod_leg2 * (t344 + minus_rate_dot_rod_leg2))
-            + t298 * s_rod_leg2 * (t348 + t245) - t228 * t312;
-        let t419 = s_rod_leg2 * (s_cross_leg2 * t402 + c_cross_leg2 * t377);
-        let t434 = t298 * rate_dot_cross_leg2 + t228 * t256;
-        let t445 = 1.0 / s_cross_leg3;
-        let t446 = 4.166666666666667 * t445;
-        let t449 = 1.0 / c_rod_leg3;
-        let t450 = s_rod_leg3 * t449;
+        let t207 = 0.5 * c_armcross_leg2;
+        let t210 = 1.0 / c_rod_leg2;
+        let t211 = s_rod_leg2 * t210;
+        let minus_garm_vx_leg2 = t198 * (t207 + 0.8660254037844387 * t211);
+        let t215 = 0.8660254037844387 * c_armcross_leg2;
+        let t221 = 0.24 * c_cross_leg2;
+        let t227 = 0.8660254037844387 * twist[0];
+        let t228 = 0.5 * twist[1];
+        let t229 = t227 + t228;
+        let t230 = t211 * t229;
+        let rate_arm_leg2 = t198
+            * (t215 * twist[1] - t207 * twist[0] - s_armcross_leg2 * twist[2] - t230);
+        let t233 = rate_arm_leg2 * rate_arm_leg2;
+        let t236 = 1.7857142857142858 * t210;
+        let minus_rate_rod_leg2 = t236 * t229;
+        let t238 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t239 = 0.5 * s_armcross_leg2;
+        let t241 = 0.8660254037844387 * s_armcross_leg2;
+        let t247 = t239 * twist[0] - t241 * twist[1] - c_armcross_leg2 * twist[2]
+            - t221 * rate_arm_leg2;
+        let rate_cross_leg2 = t236 * t247;
+        let t249 = rate_cross_leg2 * rate_cross_leg2;
+        let t253 = t215 * acceleration[1] - t207 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t221 * t233
+            + 0.56 * c_rod_leg2 * (t238 + t249);
+        let t254 = 0.8660254037844387 * acceleration[0];
+        let t255 = 0.5 * acceleration[1];
+        let t256 = t254 + t255;
+        let t258 = t256 - t230 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t198 * (t253 - t211 * t258);
+        let t262 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t198 * (t215 - 0.5 * t211);
+        let t266 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t198;
+        let t268 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t269 = 9.81 * c_arm_leg2;
+        let t273 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t236 * (t239 + minus_garm_vx_leg2 * t221);
+        let t291 = 0.24 * s_cross_leg2;
+        let t293 = t230 * rate_cross_leg2;
+        let t297 = 0.24 * rate_dot_arm_leg2;
+        let t299 = t239 * acceleration[0] - t241 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t291 * t233 + t293 + t293)
+            - c_cross_leg2 * t297;
+        let rate_dot_cross_leg2 = t236 * t299;
+        let t301 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t303 = minus_rate_rod_leg2 * (1.7857142857142858 * t247);
+        let t305 = t301 - t303 - t303;
+        let t306 = s_rod_leg2 * t305;
+        let t308 = t211 * t247;
+        let t309 = rate_cross_leg2 * t308;
+        let t310 = 2.76156059880242 * t309;
+        let minus_gcross_vy_leg2 = t236 * (t241 + t221 * garm_vy_leg2);
+        let t316 = 1.594387755102041 * t309;
+        let gcross_vz_leg2 = t236 * (t197 * s_arm_leg2);
+        let t321 = rate_dot_cross_leg2 - t306;
+        let t324 = t211 * t321 + c_rod_leg2 * t305;
+        let t326 = t308 * t308;
+        let t327 = t247 * t247;
+        let t329 = t210 * (t326 - t327);
+        let t336 = 3.188775510204082 * t327;
+        let t337 = t211 * t336;
+        let minus_rate_dot_rod_leg2 = t236 * t258;
+        let t339 = t337 - minus_rate_dot_rod_leg2;
+        let t341 = 3.188775510204082 * t326;
+        let t344 = s_rod_leg2 * t339 + c_rod_leg2 * (t238 - t341);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t210;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t210;
+        let t359 = 1.7857142857142858 * t256;
+        let t370 = t273 + 0.24 * t233;
+        let t372 = t297 - t269;
+        let t374 = s_cross_leg2 * t370 + c_cross_leg2 * t372;
+        let t375 = c_rod_leg2 * t374;
+        let t379 = c_rod_leg2 * t291;
+        let t382 = t291 * s_rod_leg2;
+        let t385 = t221 * (t210 * t321) - (t379 * (t336 + t238) + t382 * t339);
+        let t390 = s_cross_leg2 * t372 - c_cross_leg2 * t370;
+        let t391 = s_rod_leg2 * t390;
+        let t409 = t379 * (t337 + minus_rate_dot_rod_leg2) + t382 * (t341 + t238)
+            - t221 * t305;
+        let t411 = s_rod_leg2 * t374;
+        let t426 = t291 * rate_dot_cross_leg2 + t221 * t249;
+        let t435 = 0.24 * t372;
+        let t441 = 1.0 / s_cross_leg3;
+        let t442 = 4.166666666666667 * t441;
+        let t445 = 1.0 / c_rod_leg3;
+        let t446 = s_rod_leg3 * t445;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t460 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t446 * (0.8660254037844387 * t450 - t460);
-        let t463 = 0.24 * c_cross_leg3;
-        let t464 = t234 - t235;
-        let t465 = t450 * t464;
-        let t467 = 0.8660254037844387 * c_armcross_leg3;
-        let rate_arm_leg3 = t446
-            * (t465 - (t460 * twist[0] + t467 * twist[1] + s_armcross_leg3 * twist[2]));
-        let t474 = rate_arm_leg3 * rate_arm_leg3;
-        let t477 = 1.7857142857142858 * t449;
-        let rate_rod_leg3 = t477 * t464;
-        let t479 = rate_rod_leg3 * rate_rod_leg3;
-        let t480 = 0.5 * s_armcross_leg3;
-        let t482 = 0.8660254037844387 * s_armcross_leg3;
-        let t488 = t480 * twist[0] + t482 * twist[1] - c_armcross_leg3 * twist[2]
-            - t463 * rate_arm_leg3;
-        let rate_cross_leg3 = t477 * t488;
-        let t490 = rate_cross_leg3 * rate_cross_leg3;
-        let t499 = t463 * t474 + 0.56 * c_rod_leg3 * (t479 + t490)
-            - (t460 * acceleration[0] + t467 * acceleration[1]
+        let t456 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t442 * (0.8660254037844387 * t446 - t456);
+        let t459 = 0.24 * c_cross_leg3;
+        let t460 = t227 - t228;
+        let t461 = t446 * t460;
+        let t463 = 0.8660254037844387 * c_armcross_leg3;
+        let rate_arm_leg3 = t442
+            * (t461 - (t456 * twist[0] + t463 * twist[1] + s_armcross_leg3 * twist[2]));
+        let t470 = rate_arm_leg3 * rate_arm_leg3;
+        let t473 = 1.7857142857142858 * t445;
+        let rate_rod_leg3 = t473 * t460;
+        let t475 = rate_rod_leg3 * rate_rod_leg3;
+        let t476 = 0.5 * s_armcross_leg3;
+        let t478 = 0.8660254037844387 * s_armcross_leg3;
+        let t484 = t476 * twist[0] + t478 * twist[1] - c_armcross_leg3 * twist[2]
+            - t459 * rate_arm_leg3;
+        let rate_cross_leg3 = t473 * t484;
+        let t486 = rate_cross_leg3 * rate_cross_leg3;
+        let t495 = t459 * t470 + 0.56 * c_rod_leg3 * (t475 + t486)
+            - (t456 * acceleration[0] + t463 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t500 = t261 - t262;
-        let t502 = t500 + t465 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t446 * (t499 + t450 * t502);
-        let t506 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t446 * (t467 + 0.5 * t450);
-        let t510 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t446;
-        let t512 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t513 = 9.81 * c_arm_leg3;
-        let t517 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t477 * (t480 - garm_vx_leg3 * t463);
-        let t530 = 1.7857142857142858 * t488;
-        let t531 = rate_rod_leg3 * t530;
-        let t537 = 0.24 * s_cross_leg3;
-        let t539 = t465 * rate_cross_leg3;
-        let t543 = 0.24 * rate_dot_arm_leg3;
-        let t545 = t480 * acceleration[0] + t482 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t537 * t474 - t539 - t539)
-            - c_cross_leg3 * t543;
-        let rate_dot_cross_leg3 = t477 * t545;
-        let t547 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t549 = t531 + t547 + t531;
-        let t550 = s_rod_leg3 * t549;
-        let t552 = s_rod_leg3 * rate_cross_leg3;
-        let t553 = 0.56 * t552;
-        let t554 = rate_cross_leg3 * t553;
-        let t555 = 2.76156059880242 * t554;
-        let gcross_vy_leg3 = t477 * (t482 + t463 * minus_garm_vy_leg3);
-        let t561 = 1.594387755102041 * t554;
-        let gcross_vz_leg3 = t477 * (t445 * s_arm_leg3);
-        let t567 = rate_dot_cross_leg3 - t550;
-        let t569 = c_rod_leg3 * t549 + t450 * t567;
-        let t571 = t553 * t553;
-        let t574 = t449 * (t571 - t488 * t488);
-        let t581 = t530 * t552;
-        let rate_dot_rod_leg3 = t477 * t502;
-        let t585 = 3.188775510204082 * t571;
-        let t588 = s_rod_leg3 * (t581 + rate_dot_rod_leg3) + c_rod_leg3 * (t479 - t585);
-        let grod_vx_leg3 = 1.5464739353293548 * t449;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t449;
-        let t599 = gcross_vx_leg3 * t567 + t555;
-        let t601 = gcross_vy_leg3 * t567 - t561;
-        let t602 = gcross_vz_leg3 * t567;
-        let t603 = 1.7857142857142858 * t500;
-        let t611 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t612 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t613 = t543 - t513;
-        let t614 = 0.24 * t613;
-        let t615 = garm_vx_leg3 * t614;
-        let t624 = minus_garm_vy_leg3 * t614;
-        let t632 = minus_garm_vz_leg3 * t614;
-        let t645 = t537 * (c_rod_leg3 * (t581 - rate_dot_rod_leg3))
-            + t537 * s_rod_leg3 * (t585 + t479) - t463 * t549;
-        let t648 = t517 + 0.24 * t474;
-        let t652 = s_rod_leg3 * (s_cross_leg3 * t648 + c_cross_leg3 * t613);
-        let t657 = s_cross_leg3 * t613 - c_cross_leg3 * t648;
-        let t670 = t537 * rate_dot_cross_leg3 + t463 * t490;
+        let t496 = t254 - t255;
+        let t498 = t496 + t461 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t442 * (t495 + t446 * t498);
+        let t502 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t442 * (t463 + 0.5 * t446);
+        let t506 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t442;
+        let t508 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t509 = 9.81 * c_arm_leg3;
+        let t513 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t473 * (t476 - garm_vx_leg3 * t459);
+        let t527 = rate_rod_leg3 * (1.7857142857142858 * t484);
+        let t528 = 0.24 * s_cross_leg3;
+        let t535 = 0.24 * rate_dot_arm_leg3;
+        let t538 = t528 * t470
+            - (t476 * acceleration[0] + t478 * acceleration[1]
+                - c_armcross_leg3 * acceleration[2] - c_cross_leg3 * t535);
+        let t539 = t461 * rate_cross_leg3;
+        let rate_dot_cross_leg3 = t473 * (t539 + t539 - t538);
+        let t543 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t545 = t527 + t543 + t527;
+        let t546 = s_rod_leg3 * t545;
+        let t548 = t446 * t484;
+        let t549 = rate_cross_leg3 * t548;
+        let t550 = 2.76156059880242 * t549;
+        let gcross_vy_leg3 = t473 * (t478 + t459 * minus_garm_vy_leg3);
+        let t556 = 1.594387755102041 * t549;
+        let gcross_vz_leg3 = t473 * (t441 * s_arm_leg3);
+        let t562 = 1.7857142857142858 * t538;
+        let t563 = c_rod_leg3 * t562;
+        let t565 = c_rod_leg3 * t545 - t446 * t563;
+        let t567 = t548 * t548;
+        let t568 = t484 * t484;
+        let t570 = t445 * (t567 - t568);
+        let t577 = 3.188775510204082 * t568;
+        let t578 = t446 * t577;
+        let rate_dot_rod_leg3 = t473 * t498;
+        let t580 = t578 + rate_dot_rod_leg3;
+        let t582 = 3.188775510204082 * t567;
+        let t585 = s_rod_leg3 * t580 + c_rod_leg3 * (t475 - t582);
+        let grod_vx_leg3 = 1.5464739353293548 * t445;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t445;
+        let t600 = 1.7857142857142858 * t496;
+        let t611 = t513 + 0.24 * t470;
+        let t613 = t535 - t509;
+        let t615 = s_cross_leg3 * t611 + c_cross_leg3 * t613;
+        let t616 = c_rod_leg3 * t615;
+        let t618 = c_rod_leg3 * t528;
+        let t621 = t528 * s_rod_leg3;
+        let t625 = t618 * (t577 + t475) + t621 * t580 + t459 * t562;
+        let t630 = s_cross_leg3 * t613 - c_cross_leg3 * t611;
+        let t631 = s_rod_leg3 * t630;
+        let t648 = t618 * (t578 - rate_dot_rod_leg3) + t621 * (t582 + t475)
+            - t459 * t545;
+        let t650 = s_rod_leg3 * t615;
+        let t665 = t528 * rate_dot_cross_leg3 + t459 * t486;
+        let t675 = 0.24 * t613;
         Ok([
             [
                 t49, -(garm_vx_leg1 * t54), garm_vx_leg1 * t58, t49, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
                 minus_gcross_vx_leg1 * t88, -(minus_gcross_vx_leg1 * t102),
-                -(minus_gcross_vx_leg1 * t119), -t125, -(minus_gcross_vx_leg1 * t129), 0.0,
-                t136
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t139 - 5.444444444444445 * t125),
-                garm_vx_leg1 * t169 + minus_gcross_vx_leg1 * t176,
-                garm_vx_leg1 * t192 - minus_gcross_vx_leg1 * t184,
-                t139,
-                -t269,
-                minus_garm_vx_leg2 * t276,
-                -(minus_garm_vx_leg2 * t280),
-                -t269,
+                -(minus_gcross_vx_leg1 * t115), -(minus_gcross_vx_leg1 * t99),
+                -(minus_gcross_vx_leg1 * t125), 0.0,
+                -(garm_vx_leg1 * t140 + minus_gcross_vx_leg1 * t148),
+                garm_vx_leg1 * t165 + minus_gcross_vx_leg1 * t167,
+                garm_vx_leg1 * t183 - minus_gcross_vx_leg1 * t175, garm_vx_leg1 * t152, -t262,
+                minus_garm_vx_leg2 * t269, -(minus_garm_vx_leg2 * t273), -t262,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
-                -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t313 + t318,
-                gcross_vx_leg2 * t332 - 4.9313582121471775 * t337,
-                gcross_vx_leg2 * t351 - minus_grod_vx_leg2 * t308,
-                t362,
-                -(gcross_vx_leg2 * t366 + 1.5464739353293548 * rate_dot_cross_leg2),
-                t374,
-                t136
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t362 - 17.36111111111111 * t379
-                            + 5.444444444444445 * t374),
-                1.5464739353293548 * t404
-                    - (minus_garm_vx_leg2 * t414 + gcross_vx_leg2 * t419),
-                gcross_vx_leg2 * t404 - minus_garm_vx_leg2 * t434,
-                -t379,
-                t506,
-                -(garm_vx_leg3 * t513),
-                garm_vx_leg3 * t517,
-                t506,
+                -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
+                gcross_vx_leg2 * t306 + t310, gcross_vx_leg2 * t324 - 4.9313582121471775 * t329,
+                gcross_vx_leg2 * t344 - minus_grod_vx_leg2 * t301, gcross_vx_leg2 * t321 - t310,
+                -(gcross_vx_leg2 * t359 + 1.5464739353293548 * rate_dot_cross_leg2),
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                gcross_vx_leg2 * t375 - minus_garm_vx_leg2 * t385
+                    + minus_grod_vx_leg2 * t391,
+                1.5464739353293548 * t390
+                    - (minus_garm_vx_leg2 * t409 + gcross_vx_leg2 * t411),
+                gcross_vx_leg2 * t390 - minus_garm_vx_leg2 * t426,
+                -(minus_garm_vx_leg2 * t435),
+                t502,
+                -(garm_vx_leg3 * t509),
+                garm_vx_leg3 * t513,
+                t502,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                gcross_vx_leg3 * t550 - t555,
-                gcross_vx_leg3 * t569 + 4.9313582121471775 * t574,
-                gcross_vx_leg3 * t588 + grod_vx_leg3 * t547,
-                t599,
-                gcross_vx_leg3 * t603 + 1.5464739353293548 * rate_dot_cross_leg3,
-                t611,
-                t136
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t615 + 5.444444444444445 * t599
-                            + 5.444444444444445 * t611),
-                garm_vx_leg3 * t645 - gcross_vx_leg3 * t652 - 1.5464739353293548 * t657,
-                garm_vx_leg3 * t670 + gcross_vx_leg3 * t657,
-                t615,
+                gcross_vx_leg3 * t546 - t550,
+                gcross_vx_leg3 * t565 + 4.9313582121471775 * t570,
+                gcross_vx_leg3 * t585 + grod_vx_leg3 * t543,
+                t550 - gcross_vx_leg3 * t563,
+                gcross_vx_leg3 * t600 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3,
+                gcross_vx_leg3 * t616 - garm_vx_leg3 * t625 - grod_vx_leg3 * t631,
+                garm_vx_leg3 * t648 - gcross_vx_leg3 * t650 - 1.5464739353293548 * t630,
+                garm_vx_leg3 * t665 + gcross_vx_leg3 * t630,
+                garm_vx_leg3 * t675,
                 acceleration[0],
             ],
             [
                 t51, -(garm_vy_leg1 * t54), garm_vy_leg1 * t58, t51, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
                 minus_gcross_vy_leg1 * t88 - t95,
-                5.694241982507289 * (t22 * (t104 - t35 * t35))
-                    - minus_gcross_vy_leg1 * t102,
-                -(minus_gcross_vy_leg1 * t119 + grod_vy_leg1 * t85),
-                t127,
-                -(minus_gcross_vy_leg1 * t129
+                grod_vy_leg1 * (t104 - t93) - minus_gcross_vy_leg1 * t102,
+                -(minus_gcross_vy_leg1 * t115 + grod_vy_leg1 * t85),
+                t95 - minus_gcross_vy_leg1 * t99,
+                -(minus_gcross_vy_leg1 * t125
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                t135,
-                t129
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t145 + 5.444444444444445 * t127
-                            + 5.444444444444445 * t135),
-                garm_vy_leg1 * t169 + minus_gcross_vy_leg1 * t176
-                    - 1.7857142857142858 * t184,
-                garm_vy_leg1 * t192 - minus_gcross_vy_leg1 * t184,
-                t145,
-                t273,
-                -(garm_vy_leg2 * t276),
-                garm_vy_leg2 * t280,
-                t273,
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                -(garm_vy_leg1 * t140 + 1.7857142857142858 * t153),
+                garm_vy_leg1 * t165 + minus_gcross_vy_leg1 * t167
+                    - 1.7857142857142858 * t175,
+                garm_vy_leg1 * t183 - minus_gcross_vy_leg1 * t175,
+                t153,
+                t266,
+                -(garm_vy_leg2 * t269),
+                garm_vy_leg2 * t273,
+                t266,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                t324 - minus_gcross_vy_leg2 * t313,
-                -(minus_gcross_vy_leg2 * t332 + 2.8471209912536444 * t337),
-                -(minus_gcross_vy_leg2 * t351 + minus_grod_vy_leg2 * t308),
-                -t364,
+                t316 - minus_gcross_vy_leg2 * t306,
+                -(minus_gcross_vy_leg2 * t324 + 2.8471209912536444 * t329),
+                -(minus_gcross_vy_leg2 * t344 + minus_grod_vy_leg2 * t301),
+                -(minus_gcross_vy_leg2 * t321 + t316),
                 -(0.8928571428571429 * rate_dot_cross_leg2
-                    - minus_gcross_vy_leg2 * t366),
-                t375,
-                t129
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t386 - 5.444444444444445 * t364
-                            + 5.444444444444445 * t375),
-                garm_vy_leg2 * t414 + minus_gcross_vy_leg2 * t419
-                    + 0.8928571428571429 * t404,
-                garm_vy_leg2 * t434 - minus_gcross_vy_leg2 * t404,
-                t386,
-                -t510,
-                minus_garm_vy_leg3 * t513,
-                -(minus_garm_vy_leg3 * t517),
-                -t510,
+                    - minus_gcross_vy_leg2 * t359),
+                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
+                garm_vy_leg2 * t385 - minus_gcross_vy_leg2 * t375
+                    + minus_grod_vy_leg2 * t391,
+                garm_vy_leg2 * t409 + minus_gcross_vy_leg2 * t411
+                    + 0.8928571428571429 * t390,
+                garm_vy_leg2 * t426 - minus_gcross_vy_leg2 * t390,
+                garm_vy_leg2 * t435,
+                -t506,
+                minus_garm_vy_leg3 * t509,
+                -(minus_garm_vy_leg3 * t513),
+                -t506,
                 -(minus_garm_vy_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t550 + t561,
-                gcross_vy_leg3 * t569 - 2.8471209912536444 * t574,
-                gcross_vy_leg3 * t588 - minus_grod_vy_leg3 * t547,
-                t601,
-                gcross_vy_leg3 * t603 - 0.8928571428571429 * rate_dot_cross_leg3,
-                -t612,
-                t129
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t601 - 17.36111111111111 * t624
-                            - 5.444444444444445 * t612),
-                0.8928571428571429 * t657
-                    - (minus_garm_vy_leg3 * t645 + gcross_vy_leg3 * t652),
-                gcross_vy_leg3 * t657 - minus_garm_vy_leg3 * t670,
-                -t624,
+                gcross_vy_leg3 * t546 + t556,
+                gcross_vy_leg3 * t565 - 2.8471209912536444 * t570,
+                gcross_vy_leg3 * t585 - minus_grod_vy_leg3 * t543,
+                -(gcross_vy_leg3 * t563 + t556),
+                gcross_vy_leg3 * t600 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                minus_garm_vy_leg3 * t625 + gcross_vy_leg3 * t616
+                    + minus_grod_vy_leg3 * t631,
+                0.8928571428571429 * t630
+                    - (minus_garm_vy_leg3 * t648 + gcross_vy_leg3 * t650),
+                gcross_vy_leg3 * t630 - minus_garm_vy_leg3 * t665,
+                -(minus_garm_vy_leg3 * t675),
                 acceleration[1],
             ],
             [
@@ -2486,52 +2459,28 @@ impl Delta {
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
                 -(minus_minus_gcross_vz_leg1 * t88), minus_minus_gcross_vz_leg1 * t102,
-                minus_minus_gcross_vz_leg1 * t119, t128, minus_minus_gcross_vz_leg1 * t129, 0.0,
-                t154
-                    + 0.10285714285714286
-                        * (17.36111111111111 * t155 - 5.444444444444445 * t128),
-                -(minus_minus_gcross_vz_leg1 * t176 + minus_garm_vz_leg1 * t169),
-                -(minus_garm_vz_leg1 * t192 - minus_minus_gcross_vz_leg1 * t184),
-                -t155,
-                -t275,
-                minus_garm_vz_leg2 * t276,
-                -(minus_garm_vz_leg2 * t280),
-                -t275,
-                -(minus_garm_vz_leg2 * rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
-                -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t313,
-                gcross_vz_leg2 * t332,
-                gcross_vz_leg2 * t351,
-                t365,
-                -(gcross_vz_leg2 * t366),
-                0.0,
-                t154
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t365 - 17.36111111111111 * t395),
-                -(minus_garm_vz_leg2 * t414 + gcross_vz_leg2 * t419),
-                gcross_vz_leg2 * t404 - minus_garm_vz_leg2 * t434,
-                -t395,
-                -t512,
-                minus_garm_vz_leg3 * t513,
-                -(minus_garm_vz_leg3 * t517),
-                -t512,
+                minus_minus_gcross_vz_leg1 * t115, minus_minus_gcross_vz_leg1 * t99,
+                minus_minus_gcross_vz_leg1 * t125, 0.0,
+                minus_garm_vz_leg1 * t140 + minus_minus_gcross_vz_leg1 * t148,
+                -(minus_minus_gcross_vz_leg1 * t167 + minus_garm_vz_leg1 * t165),
+                -(minus_garm_vz_leg1 * t183 - minus_minus_gcross_vz_leg1 * t175),
+                -(minus_garm_vz_leg1 * t152), -t268, minus_garm_vz_leg2 * t269,
+                -(minus_garm_vz_leg2 * t273), -t268, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
+                gcross_vz_leg2 * t306, gcross_vz_leg2 * t324, gcross_vz_leg2 * t344,
+                gcross_vz_leg2 * t321, -(gcross_vz_leg2 * t359), 0.0,
+                gcross_vz_leg2 * t375 - minus_garm_vz_leg2 * t385,
+                -(minus_garm_vz_leg2 * t409 + gcross_vz_leg2 * t411),
+                gcross_vz_leg2 * t390 - minus_garm_vz_leg2 * t426, -(minus_garm_vz_leg2 * t435),
+                -t508, minus_garm_vz_leg3 * t509, -(minus_garm_vz_leg3 * t513), -t508,
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
-                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
-                -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t550,
-                gcross_vz_leg3 * t569,
-                gcross_vz_leg3 * t588,
-                t602,
-                gcross_vz_leg3 * t603,
-                0.0,
-                t154
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t602 - 17.36111111111111 * t632),
-                -(minus_garm_vz_leg3 * t645 + gcross_vz_leg3 * t652),
-                gcross_vz_leg3 * t657 - minus_garm_vz_leg3 * t670,
-                -t632,
-                t153,
+                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
+                gcross_vz_leg3 * t546, gcross_vz_leg3 * t565, gcross_vz_leg3 * t585,
+                -(gcross_vz_leg3 * t563), gcross_vz_leg3 * t600, 0.0,
+                minus_garm_vz_leg3 * t625 + gcross_vz_leg3 * t616,
+                -(minus_garm_vz_leg3 * t648 + gcross_vz_leg3 * t650),
+                gcross_vz_leg3 * t630 - minus_garm_vz_leg3 * t665, -(minus_garm_vz_leg3 * t675),
+                acceleration[2] + 9.81,
             ],
         ])
     }
@@ -4946,7 +4895,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 584 operations (171 additions, 407 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 488 intermediates.
+    /// 588 operations (171 additions, 411 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 492 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5075,9 +5024,9 @@ impl Delta {
         let t245 = 0.24 * rate_dot_arm_leg1;
         let t250 = 0.24 * s_cross_leg1;
         let t252 = t25 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t245 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t250 * t28 + t252 + t252);
+        let t256 = c_cross_leg1 * t245 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t250 * t28 + t252 + t252;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t256;
         let t258 = s_rod_leg1 * minus_rate_dot_cross_leg1;
         let t260 = t244 + t258 + t244;
         let t261 = s_rod_leg1 * t260;
@@ -5086,97 +5035,95 @@ impl Delta {
         let t268 = 3.188775510204082 * (minus_rate_cross_leg1 * t266);
         let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t241;
         let gcross_vx_leg2 = t96 * (t99 + minus_garm_vx_leg2 * t81);
-        let t280 = 0.24 * s_cross_leg2;
-        let t282 = t90 * rate_cross_leg2;
-        let t286 = 0.24 * rate_dot_arm_leg2;
-        let t288 = t99 * acceleration[0] - t101 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t280 * t93 + t282 + t282)
-            - c_cross_leg2 * t286;
-        let rate_dot_cross_leg2 = t96 * t288;
+        let t275 = 0.24 * s_cross_leg2;
+        let t282 = 0.24 * rate_dot_arm_leg2;
+        let t285 = t99 * acceleration[0] - t101 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - c_cross_leg2 * t282 - t275 * t93;
+        let t286 = t90 * rate_cross_leg2;
+        let rate_dot_cross_leg2 = t96 * (t285 - (t286 + t286));
         let t290 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t291 = 1.7857142857142858 * t107;
-        let t292 = minus_rate_rod_leg2 * t291;
+        let t292 = minus_rate_rod_leg2 * (1.7857142857142858 * t107);
         let t294 = t290 - t292 - t292;
         let t295 = s_rod_leg2 * t294;
-        let t297 = s_rod_leg2 * rate_cross_leg2;
-        let t298 = 0.56 * t297;
-        let t299 = rate_cross_leg2 * t298;
-        let t300 = 2.76156059880242 * t299;
+        let t297 = t71 * t107;
+        let t298 = rate_cross_leg2 * t297;
+        let t299 = 2.76156059880242 * t298;
         let minus_gcross_vy_leg2 = t96 * (t101 + t81 * garm_vy_leg2);
-        let t306 = 1.594387755102041 * t299;
+        let t305 = 1.594387755102041 * t298;
         let gcross_vz_leg2 = t96 * (t57 * s_arm_leg2);
         let gcross_vx_leg3 = t163 * (t166 - garm_vx_leg3 * t149);
-        let t314 = 1.7857142857142858 * t174;
-        let t315 = rate_rod_leg3 * t314;
-        let t321 = 0.24 * s_cross_leg3;
-        let t323 = t151 * rate_cross_leg3;
-        let t327 = 0.24 * rate_dot_arm_leg3;
-        let t329 = t166 * acceleration[0] + t168 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t321 * t160 - t323 - t323)
-            - c_cross_leg3 * t327;
-        let rate_dot_cross_leg3 = t163 * t329;
-        let t331 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t333 = t315 + t331 + t315;
-        let t334 = s_rod_leg3 * t333;
-        let t336 = s_rod_leg3 * rate_cross_leg3;
-        let t337 = 0.56 * t336;
-        let t338 = rate_cross_leg3 * t337;
-        let t339 = 2.76156059880242 * t338;
+        let t313 = 1.7857142857142858 * t174;
+        let t314 = rate_rod_leg3 * t313;
+        let t320 = 0.24 * s_cross_leg3;
+        let t322 = t151 * rate_cross_leg3;
+        let t326 = 0.24 * rate_dot_arm_leg3;
+        let t328 = t166 * acceleration[0] + t168 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t320 * t160 - t322 - t322)
+            - c_cross_leg3 * t326;
+        let rate_dot_cross_leg3 = t163 * t328;
+        let t330 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t332 = t314 + t330 + t314;
+        let t333 = s_rod_leg3 * t332;
+        let t335 = s_rod_leg3 * rate_cross_leg3;
+        let t336 = 0.56 * t335;
+        let t337 = rate_cross_leg3 * t336;
+        let t338 = 2.76156059880242 * t337;
         let gcross_vy_leg3 = t163 * (t168 + t149 * minus_garm_vy_leg3);
-        let t345 = 1.594387755102041 * t338;
+        let t344 = 1.594387755102041 * t337;
         let gcross_vz_leg3 = t163 * (t131 * s_arm_leg3);
-        let t350 = t261 - minus_rate_dot_cross_leg1;
-        let t353 = t24 * t350 - c_rod_leg1 * t260;
-        let t355 = t266 * t266;
-        let t363 = rate_dot_cross_leg2 - t295;
-        let t366 = t71 * t363 + c_rod_leg2 * t294;
-        let t368 = t298 * t298;
-        let t371 = t70 * (t368 - t107 * t107);
-        let t379 = rate_dot_cross_leg3 - t334;
-        let t381 = c_rod_leg3 * t333 + t136 * t379;
-        let t383 = t337 * t337;
-        let t386 = t135 * (t383 - t174 * t174);
-        let t393 = t30 * t268;
+        let t353 = s_rod_leg1 * t244 + c_rod_leg1 * (1.7857142857142858 * (t252 - t256));
+        let t356 = t24 * t353 - c_rod_leg1 * t260;
+        let t358 = t266 * t266;
+        let t366 = 1.7857142857142858 * c_rod_leg2;
+        let t367 = t366 * t285;
+        let t370 = t71 * t367 + c_rod_leg2 * t294;
+        let t372 = t297 * t297;
+        let t375 = t70 * (t372 - t107 * t107);
+        let t383 = rate_dot_cross_leg3 - t333;
+        let t385 = c_rod_leg3 * t332 + t136 * t383;
+        let t387 = t336 * t336;
+        let t390 = t135 * (t387 - t174 * t174);
+        let t397 = t30 * t268;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t46;
-        let t397 = 3.188775510204082 * t355;
-        let t400 = s_rod_leg1 * (t393 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t397);
-        let t406 = t291 * t297;
+        let t401 = 3.188775510204082 * t358;
+        let t404 = s_rod_leg1 * (t397 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t401);
+        let t410 = t298 * t366;
         let minus_rate_dot_rod_leg2 = t96 * t118;
-        let t410 = 3.188775510204082 * t368;
-        let t413 = s_rod_leg2 * (t406 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t98 - t410);
+        let t414 = 3.188775510204082 * t372;
+        let t417 = s_rod_leg2 * (t410 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t98 - t414);
         let minus_grod_vx_leg2 = 1.5464739353293548 * t70;
         let minus_grod_vy_leg2 = 0.8928571428571429 * t70;
-        let t423 = t314 * t336;
+        let t427 = t313 * t335;
         let rate_dot_rod_leg3 = t163 * t188;
-        let t427 = 3.188775510204082 * t383;
-        let t430 = s_rod_leg3 * (t423 + rate_dot_rod_leg3) + c_rod_leg3 * (t165 - t427);
+        let t431 = 3.188775510204082 * t387;
+        let t434 = s_rod_leg3 * (t427 + rate_dot_rod_leg3) + c_rod_leg3 * (t165 - t431);
         let grod_vx_leg3 = 1.5464739353293548 * t135;
         let minus_grod_vy_leg3 = 0.8928571428571429 * t135;
-        let t454 = 1.7857142857142858 * acceleration[1];
-        let t460 = 1.7857142857142858 * t116;
-        let t468 = 1.7857142857142858 * t186;
-        let t489 = t250 * (c_rod_leg1 * (t393 - rate_dot_rod_leg1))
-            + t250 * s_rod_leg1 * (t397 + t40) + t17 * t260;
-        let t492 = t211 + 0.24 * t28;
-        let t494 = t245 - t199;
-        let t497 = s_rod_leg1 * (s_cross_leg1 * t492 + c_cross_leg1 * t494);
-        let t505 = s_cross_leg1 * t494 - c_cross_leg1 * t492;
-        let t511 = t286 - t203;
-        let t514 = t215 + 0.24 * t93;
-        let t516 = s_cross_leg2 * t511 - c_cross_leg2 * t514;
-        let t526 = t280 * (c_rod_leg2 * (t406 + minus_rate_dot_rod_leg2))
-            + t280 * s_rod_leg2 * (t410 + t98) - t81 * t294;
-        let t531 = s_rod_leg2 * (s_cross_leg2 * t514 + c_cross_leg2 * t511);
-        let t551 = t321 * (c_rod_leg3 * (t423 - rate_dot_rod_leg3))
-            + t321 * s_rod_leg3 * (t427 + t165) - t149 * t333;
-        let t554 = t219 + 0.24 * t160;
-        let t556 = t327 - t207;
-        let t559 = s_rod_leg3 * (s_cross_leg3 * t554 + c_cross_leg3 * t556);
-        let t564 = s_cross_leg3 * t556 - c_cross_leg3 * t554;
-        let t577 = t17 * t38 - t250 * minus_rate_dot_cross_leg1;
-        let t590 = t280 * rate_dot_cross_leg2 + t81 * t109;
-        let t601 = t321 * rate_dot_cross_leg3 + t149 * t176;
+        let t458 = 1.7857142857142858 * acceleration[1];
+        let t464 = 1.7857142857142858 * t116;
+        let t472 = 1.7857142857142858 * t186;
+        let t493 = t250 * (c_rod_leg1 * (t397 - rate_dot_rod_leg1))
+            + t250 * s_rod_leg1 * (t401 + t40) + t17 * t260;
+        let t496 = t211 + 0.24 * t28;
+        let t498 = t245 - t199;
+        let t501 = s_rod_leg1 * (s_cross_leg1 * t496 + c_cross_leg1 * t498);
+        let t509 = s_cross_leg1 * t498 - c_cross_leg1 * t496;
+        let t515 = t282 - t203;
+        let t518 = t215 + 0.24 * t93;
+        let t520 = s_cross_leg2 * t515 - c_cross_leg2 * t518;
+        let t530 = t275 * (c_rod_leg2 * (t410 + minus_rate_dot_rod_leg2))
+            + t275 * s_rod_leg2 * (t414 + t98) - t81 * t294;
+        let t535 = s_rod_leg2 * (s_cross_leg2 * t518 + c_cross_leg2 * t515);
+        let t555 = t320 * (c_rod_leg3 * (t427 - rate_dot_rod_leg3))
+            + t320 * s_rod_leg3 * (t431 + t165) - t149 * t332;
+        let t558 = t219 + 0.24 * t160;
+        let t560 = t326 - t207;
+        let t563 = s_rod_leg3 * (s_cross_leg3 * t558 + c_cross_leg3 * t560);
+        let t568 = s_cross_leg3 * t560 - c_cross_leg3 * t558;
+        let t581 = t17 * t38 - t250 * minus_rate_dot_cross_leg1;
+        let t594 = t275 * rate_dot_cross_leg2 + t81 * t109;
+        let t605 = t320 * rate_dot_cross_leg3 + t149 * t176;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
@@ -5188,23 +5135,23 @@ impl Delta {
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1,
                 -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t261,
-                gcross_vx_leg2 * t295 + t300, gcross_vx_leg3 * t334 - t339,
-                -(minus_gcross_vx_leg1 * t353), gcross_vx_leg2 * t366 - 4.9313582121471775 * t371,
-                gcross_vx_leg3 * t381 + 4.9313582121471775 * t386, -(minus_gcross_vx_leg1 * t400),
-                gcross_vx_leg2 * t413 - minus_grod_vx_leg2 * t290,
-                gcross_vx_leg3 * t430 + grod_vx_leg3 * t331, -(minus_gcross_vx_leg1 * t350),
-                gcross_vx_leg2 * t363 - t300, gcross_vx_leg3 * t379 + t339,
-                -(minus_gcross_vx_leg1 * t454),
-                -(gcross_vx_leg2 * t460 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t468 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                gcross_vx_leg2 * t295 + t299, gcross_vx_leg3 * t333 - t338,
+                -(minus_gcross_vx_leg1 * t356), gcross_vx_leg2 * t370 - 4.9313582121471775 * t375,
+                gcross_vx_leg3 * t385 + 4.9313582121471775 * t390, -(minus_gcross_vx_leg1 * t404),
+                gcross_vx_leg2 * t417 - minus_grod_vx_leg2 * t290,
+                gcross_vx_leg3 * t434 + grod_vx_leg3 * t330, -(minus_gcross_vx_leg1 * t353),
+                gcross_vx_leg2 * t367 - t299, gcross_vx_leg3 * t383 + t338,
+                -(minus_gcross_vx_leg1 * t458),
+                -(gcross_vx_leg2 * t464 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t472 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t489 + minus_gcross_vx_leg1 * t497,
-                1.5464739353293548 * t516
-                    - (minus_garm_vx_leg2 * t526 + gcross_vx_leg2 * t531),
-                garm_vx_leg3 * t551 - gcross_vx_leg3 * t559 - 1.5464739353293548 * t564,
-                garm_vx_leg1 * t577 - minus_gcross_vx_leg1 * t505,
-                gcross_vx_leg2 * t516 - minus_garm_vx_leg2 * t590,
-                garm_vx_leg3 * t601 + gcross_vx_leg3 * t564,
+                garm_vx_leg1 * t493 + minus_gcross_vx_leg1 * t501,
+                1.5464739353293548 * t520
+                    - (minus_garm_vx_leg2 * t530 + gcross_vx_leg2 * t535),
+                garm_vx_leg3 * t555 - gcross_vx_leg3 * t563 - 1.5464739353293548 * t568,
+                garm_vx_leg1 * t581 - minus_gcross_vx_leg1 * t509,
+                gcross_vx_leg2 * t520 - minus_garm_vx_leg2 * t594,
+                garm_vx_leg3 * t605 + gcross_vx_leg3 * t568,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
@@ -5216,34 +5163,34 @@ impl Delta {
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3), garm_vy_leg1,
                 garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t261 - t268,
-                t306 - minus_gcross_vy_leg2 * t295, gcross_vy_leg3 * t334 + t345,
-                5.694241982507289 * (t23 * (t355 - t36 * t36))
-                    - minus_gcross_vy_leg1 * t353,
-                -(minus_gcross_vy_leg2 * t366 + 2.8471209912536444 * t371),
-                gcross_vy_leg3 * t381 - 2.8471209912536444 * t386,
-                -(minus_gcross_vy_leg1 * t400 + grod_vy_leg1 * t258),
-                -(minus_gcross_vy_leg2 * t413 + minus_grod_vy_leg2 * t290),
-                gcross_vy_leg3 * t430 - minus_grod_vy_leg3 * t331,
-                t268 - minus_gcross_vy_leg1 * t350,
-                -(minus_gcross_vy_leg2 * t363 + t306),
-                gcross_vy_leg3 * t379 - t345,
-                -(minus_gcross_vy_leg1 * t454
+                t305 - minus_gcross_vy_leg2 * t295, gcross_vy_leg3 * t333 + t344,
+                5.694241982507289 * (t23 * (t358 - t36 * t36))
+                    - minus_gcross_vy_leg1 * t356,
+                -(minus_gcross_vy_leg2 * t370 + 2.8471209912536444 * t375),
+                gcross_vy_leg3 * t385 - 2.8471209912536444 * t390,
+                -(minus_gcross_vy_leg1 * t404 + grod_vy_leg1 * t258),
+                -(minus_gcross_vy_leg2 * t417 + minus_grod_vy_leg2 * t290),
+                gcross_vy_leg3 * t434 - minus_grod_vy_leg3 * t330,
+                t268 - minus_gcross_vy_leg1 * t353,
+                -(minus_gcross_vy_leg2 * t367 + t305),
+                gcross_vy_leg3 * t383 - t344,
+                -(minus_gcross_vy_leg1 * t458
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 -(0.8928571428571429 * rate_dot_cross_leg2
-                    - minus_gcross_vy_leg2 * t460),
-                gcross_vy_leg3 * t468 - 0.8928571428571429 * rate_dot_cross_leg3,
+                    - minus_gcross_vy_leg2 * t464),
+                gcross_vy_leg3 * t472 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t489 + minus_gcross_vy_leg1 * t497
-                    - 1.7857142857142858 * t505,
-                garm_vy_leg2 * t526 + minus_gcross_vy_leg2 * t531
-                    + 0.8928571428571429 * t516,
-                0.8928571428571429 * t564
-                    - (minus_garm_vy_leg3 * t551 + gcross_vy_leg3 * t559),
-                garm_vy_leg1 * t577 - minus_gcross_vy_leg1 * t505,
-                garm_vy_leg2 * t590 - minus_gcross_vy_leg2 * t516,
-                gcross_vy_leg3 * t564 - minus_garm_vy_leg3 * t601,
+                garm_vy_leg1 * t493 + minus_gcross_vy_leg1 * t501
+                    - 1.7857142857142858 * t509,
+                garm_vy_leg2 * t530 + minus_gcross_vy_leg2 * t535
+                    + 0.8928571428571429 * t520,
+                0.8928571428571429 * t568
+                    - (minus_garm_vy_leg3 * t555 + gcross_vy_leg3 * t563),
+                garm_vy_leg1 * t581 - minus_gcross_vy_leg1 * t509,
+                garm_vy_leg2 * t594 - minus_gcross_vy_leg2 * t520,
+                gcross_vy_leg3 * t568 - minus_garm_vy_leg3 * t605,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
@@ -5257,17 +5204,17 @@ impl Delta {
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -(minus_minus_gcross_vz_leg1 * t261),
-                gcross_vz_leg2 * t295, gcross_vz_leg3 * t334, minus_minus_gcross_vz_leg1 * t353,
-                gcross_vz_leg2 * t366, gcross_vz_leg3 * t381, minus_minus_gcross_vz_leg1 * t400,
-                gcross_vz_leg2 * t413, gcross_vz_leg3 * t430, minus_minus_gcross_vz_leg1 * t350,
-                gcross_vz_leg2 * t363, gcross_vz_leg3 * t379, minus_minus_gcross_vz_leg1 * t454,
-                -(gcross_vz_leg2 * t460), gcross_vz_leg3 * t468, 0.0, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t497 + minus_garm_vz_leg1 * t489),
-                -(minus_garm_vz_leg2 * t526 + gcross_vz_leg2 * t531),
-                -(minus_garm_vz_leg3 * t551 + gcross_vz_leg3 * t559),
-                -(minus_garm_vz_leg1 * t577 - minus_minus_gcross_vz_leg1 * t505),
-                gcross_vz_leg2 * t516 - minus_garm_vz_leg2 * t590,
-                gcross_vz_leg3 * t564 - minus_garm_vz_leg3 * t601,
+                gcross_vz_leg2 * t295, gcross_vz_leg3 * t333, minus_minus_gcross_vz_leg1 * t356,
+                gcross_vz_leg2 * t370, gcross_vz_leg3 * t385, minus_minus_gcross_vz_leg1 * t404,
+                gcross_vz_leg2 * t417, gcross_vz_leg3 * t434, minus_minus_gcross_vz_leg1 * t353,
+                gcross_vz_leg2 * t367, gcross_vz_leg3 * t383, minus_minus_gcross_vz_leg1 * t458,
+                -(gcross_vz_leg2 * t464), gcross_vz_leg3 * t472, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t501 + minus_garm_vz_leg1 * t493),
+                -(minus_garm_vz_leg2 * t530 + gcross_vz_leg2 * t535),
+                -(minus_garm_vz_leg3 * t555 + gcross_vz_leg3 * t563),
+                -(minus_garm_vz_leg1 * t581 - minus_minus_gcross_vz_leg1 * t509),
+                gcross_vz_leg2 * t520 - minus_garm_vz_leg2 * t594,
+                gcross_vz_leg3 * t568 - minus_garm_vz_leg3 * t605,
             ],
         ])
     }
@@ -6948,7 +6895,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 350 operations (121 additions, 211 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 353 intermediates.
+    /// 344 operations (119 additions, 207 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 347 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6985,179 +6932,176 @@ impl Delta {
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 4.166666666666667 * t34;
-        let garm_vx_leg1 = c_armcross_leg1 * t35;
-        let t38 = t0 + 0.025;
-        let t39 = t38 * t38;
-        let t41 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t44 = t39 + t41 * t41 + t3;
-        let t47 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t49 = 0.8660254037844387 * t38 - 0.5 * t47;
-        let t50 = pose[1] + t49;
-        let t51 = t50 * t50;
-        let t53 = 0.2304 * (t44 - t51);
-        let t54 = t44 - 0.3136;
-        let t55 = t54 + 0.0576;
-        let t57 = t53 - t55 * t55;
-        ::overact::guard::reach(t57, "leg2")?;
-        let t58 = ::overact::math::sqrt(t57);
-        let t60 = 1.0 - 3.188775510204082 * t51;
-        ::overact::guard::reach(t60, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t60);
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t37 = t0 + 0.025;
+        let t38 = t37 * t37;
+        let t40 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t43 = t38 + t40 * t40 + t3;
+        let t46 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t48 = 0.8660254037844387 * t37 - 0.5 * t46;
+        let t49 = pose[1] + t48;
+        let t50 = t49 * t49;
+        let t52 = 0.2304 * (t43 - t50);
+        let t53 = t43 - 0.3136;
+        let t54 = t53 + 0.0576;
+        let t56 = t52 - t54 * t54;
+        ::overact::guard::reach(t56, "leg2")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t59 = 1.0 - 3.188775510204082 * t50;
+        ::overact::guard::reach(t59, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t59);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t62 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t58 / t62;
+        let t61 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t57 / t61;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t64 = 1.0 / s_cross_leg2;
-        let t65 = 4.166666666666667 * t64;
-        let t66 = 1.7857142857142858 / c_rod_leg2;
-        let t67 = t50 * t66;
-        let t69 = 1.0 / t53;
-        let t71 = 0.5 * t38;
-        let t73 = 0.48 * (0.8660254037844387 * t41 - t71);
-        let c_arm_leg2 = t69 * (t73 * t55 - t13 * t58);
-        let c_cross_leg2 = (-0.0576 + t54) / t62;
-        let minus_s_arm_leg2 = t69 * (t13 * t55 + t73 * t58);
+        let t63 = 1.0 / s_cross_leg2;
+        let t64 = 4.166666666666667 * t63;
+        let t65 = 1.7857142857142858 / c_rod_leg2;
+        let t66 = t49 * t65;
+        let t68 = 1.0 / t52;
+        let t70 = 0.5 * t37;
+        let t72 = 0.48 * (0.8660254037844387 * t40 - t70);
+        let c_arm_leg2 = t68 * (t72 * t54 - t13 * t57);
+        let c_cross_leg2 = (-0.0576 + t53) / t61;
+        let minus_s_arm_leg2 = t68 * (t13 * t54 + t72 * t57);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t87 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t65 * (0.8660254037844387 * t67 - t87);
-        let t94 = t39 + t47 * t47 + t3;
-        let t95 = t49 * t49;
-        let t97 = 0.2304 * (t94 - t95);
-        let t98 = t94 - 0.3136;
-        let t99 = t98 + 0.0576;
-        let t101 = t97 - t99 * t99;
-        ::overact::guard::reach(t101, "leg3")?;
-        let t102 = ::overact::math::sqrt(t101);
-        let t104 = 1.0 - 3.188775510204082 * t95;
-        ::overact::guard::reach(t104, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t104);
+        let t86 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t64 * (0.8660254037844387 * t66 - t86);
+        let t93 = t38 + t46 * t46 + t3;
+        let t94 = t48 * t48;
+        let t96 = 0.2304 * (t93 - t94);
+        let t97 = t93 - 0.3136;
+        let t98 = t97 + 0.0576;
+        let t100 = t96 - t98 * t98;
+        ::overact::guard::reach(t100, "leg3")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let t103 = 1.0 - 3.188775510204082 * t94;
+        ::overact::guard::reach(t103, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t103);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t106 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t102 / t106;
+        let t105 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t101 / t105;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t108 = 1.0 / s_cross_leg3;
-        let t109 = 4.166666666666667 * t108;
-        let t110 = 1.0 / t97;
-        let t113 = 0.48 * (t71 + 0.8660254037844387 * t47);
-        let minus_c_arm_leg3 = t110 * (t113 * t99 + t13 * t102);
-        let c_cross_leg3 = (-0.0576 + t98) / t106;
-        let s_arm_leg3 = t110 * (t113 * t102 - t13 * t99);
+        let t107 = 1.0 / s_cross_leg3;
+        let t108 = 4.166666666666667 * t107;
+        let t109 = 1.0 / t96;
+        let t112 = 0.48 * (t70 + 0.8660254037844387 * t46);
+        let minus_c_arm_leg3 = t109 * (t112 * t98 + t13 * t101);
+        let c_cross_leg3 = (-0.0576 + t97) / t105;
+        let s_arm_leg3 = t109 * (t112 * t101 - t13 * t98);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t127 = 0.5 * minus_c_armcross_leg3;
-        let t128 = 1.7857142857142858 / c_rod_leg3;
-        let t129 = t49 * t128;
-        let garm_vx_leg3 = t109 * (t127 + 0.8660254037844387 * t129);
-        let t134 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t126 = 0.5 * minus_c_armcross_leg3;
+        let t127 = 1.7857142857142858 / c_rod_leg3;
+        let t128 = t48 * t127;
+        let garm_vx_leg3 = t108 * (t126 + 0.8660254037844387 * t128);
+        let t133 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t134, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t134, 14.869730172882841, "actuators")?;
-        let t135 = 1.0 / t134;
-        let t136 = c_cross_leg1 * t34;
-        let t141 = garm_vx_leg1 * actuator_velocities[0]
-            + garm_vx_leg2 * actuator_velocities[1]
-            + garm_vx_leg3 * actuator_velocities[2];
+        ::overact::guard::platform(t133, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t133, 14.869730172882841, "actuators")?;
+        let t134 = 1.0 / t133;
+        let t135 = 0.24 * c_cross_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t144 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t35 * t144;
-        let t147 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t65 * (t147 + 0.5 * t67);
-        let t153 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t109 * (t153 - 0.5 * t129);
-        let t158 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
-            + garm_vx_leg3 * garm_vy_leg3;
-        let t159 = t158 * t135;
-        let t166 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t158 * t159;
-        ::overact::guard::platform(t166, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t166, 14.869730172882846, "actuators")?;
-        let t167 = 1.0 / t166;
-        let t174 = garm_vy_leg1 * actuator_velocities[0]
-            + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t141 * t159;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let t148 = garm_vx_leg1 * actuator_velocities[0]
+            + garm_vx_leg2 * actuator_velocities[1]
+            + garm_vx_leg3 * actuator_velocities[2];
+        let t150 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t34 * t150;
+        let t153 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t64 * (t153 + 0.5 * t66);
+        let t159 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t108 * (t159 - 0.5 * t128);
+        let t164 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+            + garm_vx_leg3 * garm_vy_leg3;
+        let t165 = t164 * t134;
+        let t172 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t164 * t165;
+        ::overact::guard::platform(t172, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t172, 14.869730172882846, "actuators")?;
+        let t173 = 1.0 / t172;
+        let t180 = garm_vy_leg1 * actuator_velocities[0]
+            + garm_vy_leg2 * actuator_velocities[1]
+            + garm_vy_leg3 * actuator_velocities[2] - t148 * t165;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t65;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t64;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t109;
-        let t192 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t108;
+        let t195 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t193 = t192 * t135;
-        let t200 = t158 * t193
+        let t196 = t195 * t134;
+        let t203 = t164 * t196
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t201 = t200 * t167;
-        let t210 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t204 = t203 * t173;
+        let t213 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t192 * t193 - t200 * t201;
-        ::overact::guard::platform(t210, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t210, 34.855350201355726, "actuators")?;
-        let t211 = 1.0 / t210;
-        let t221 = t211
-            * (t141 * t193
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t195 * t196 - t203 * t204;
+        ::overact::guard::platform(t213, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t213, 34.855350201355726, "actuators")?;
+        let t214 = 1.0 / t213;
+        let t224 = t214
+            * (t148 * t196
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t201 * t174);
-        let t223 = t167 * t174 - t201 * t221;
-        let t227 = t141 * t135 - t159 * t223 + t193 * t221;
-        let t234 = t136 * (c_armcross_leg1 * t227 - s_armcross_leg1 * t221)
-            + t136 * t144 * t223;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t204 * t180);
+        let t226 = t173 * t180 - t204 * t224;
+        let t230 = t148 * t134 - t165 * t226 + t196 * t224;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (t234 + s_armcross_leg1 * t227 + c_armcross_leg1 * t221);
-        let rate_rod_leg1 = grod_vy_leg1 * t223;
-        let t244 = rate_rod_leg1 * rate_rod_leg1;
-        let rate_dot_arm_leg1 = t35
-            * (actuator_velocities[0] * t234
-                + 0.56 * c_rod_leg1
-                    * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t244)
-                + t144 * (pose[1] * t244));
-        let t252 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t258 = 0.8660254037844387 * t227;
-        let t259 = 0.5 * t223;
-        let t260 = t258 + t259;
-        let minus_rate_rod_leg2 = t66 * t260;
-        let t262 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t270 = c_cross_leg2 * t64;
-        let t277 = 0.5 * s_armcross_leg2 * t227
-            - 0.8660254037844387 * s_armcross_leg2 * t223 - c_armcross_leg2 * t221
-            - t270 * (t147 * t223 - t87 * t227 - s_armcross_leg2 * t221);
-        let rate_cross_leg2 = t66 * (t277 - t67 * t270 * t260);
-        let t288 = 0.24 * c_cross_leg2
+            * (t135 * actuator_velocities[0] + s_armcross_leg1 * t230
+                + c_armcross_leg1 * t224);
+        let rate_rod_leg1 = grod_vy_leg1 * t226;
+        let t238 = rate_rod_leg1 * rate_rod_leg1;
+        let t244 = t135 * (actuator_velocities[0] * actuator_velocities[0])
+            + 0.56 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t238)
+            + t150 * (pose[1] * t238);
+        let rate_dot_arm_leg1 = t34 * t244;
+        let t246 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t252 = 0.8660254037844387 * t230;
+        let t253 = 0.5 * t226;
+        let t254 = t252 + t253;
+        let minus_rate_rod_leg2 = t65 * t254;
+        let t256 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t264 = c_cross_leg2 * t63;
+        let t271 = 0.5 * s_armcross_leg2 * t230
+            - 0.8660254037844387 * s_armcross_leg2 * t226 - c_armcross_leg2 * t224
+            - t264 * (t153 * t226 - t86 * t230 - s_armcross_leg2 * t224);
+        let rate_cross_leg2 = t65 * (t271 - t66 * t264 * t254);
+        let t282 = 0.24 * c_cross_leg2
             * (actuator_velocities[1] * actuator_velocities[1])
-            + 0.56 * c_rod_leg2 * (t262 + rate_cross_leg2 * rate_cross_leg2)
-            + t67 * (t50 * t262);
-        let rate_dot_arm_leg2 = t65 * t288;
-        let t290 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t297 = t258 - t259;
-        let rate_rod_leg3 = t128 * t297;
-        let t299 = rate_rod_leg3 * rate_rod_leg3;
-        let t307 = c_cross_leg3 * t108;
-        let t314 = 0.5 * s_armcross_leg3 * t227
-            + 0.8660254037844387 * s_armcross_leg3 * t223 + minus_c_armcross_leg3 * t221
-            - t307 * (t127 * t227 + t153 * t223 - s_armcross_leg3 * t221);
-        let rate_cross_leg3 = t128 * (t314 - t129 * t307 * t297);
-        let t325 = 0.24 * c_cross_leg3
+            + 0.56 * c_rod_leg2 * (t256 + rate_cross_leg2 * rate_cross_leg2)
+            + t66 * (t49 * t256);
+        let rate_dot_arm_leg2 = t64 * t282;
+        let t284 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t291 = t252 - t253;
+        let rate_rod_leg3 = t127 * t291;
+        let t293 = rate_rod_leg3 * rate_rod_leg3;
+        let t301 = c_cross_leg3 * t107;
+        let t308 = 0.5 * s_armcross_leg3 * t230
+            + 0.8660254037844387 * s_armcross_leg3 * t226 + minus_c_armcross_leg3 * t224
+            - t301 * (t126 * t230 + t159 * t226 - s_armcross_leg3 * t224);
+        let rate_cross_leg3 = t127 * (t308 - t128 * t301 * t291);
+        let t319 = 0.24 * c_cross_leg3
             * (actuator_velocities[2] * actuator_velocities[2])
-            + 0.56 * c_rod_leg3 * (t299 + rate_cross_leg3 * rate_cross_leg3)
-            + t129 * (t49 * t299);
-        let rate_dot_arm_leg3 = t109 * t325;
-        let t327 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t329 = garm_vx_leg1 * t252 + garm_vx_leg2 * t290 + garm_vx_leg3 * t327;
-        let t337 = garm_vy_leg1 * t252 + garm_vy_leg2 * t290 + garm_vy_leg3 * t327
-            - t159 * t329;
-        let t348 = t211
-            * (t193 * t329
-                - (minus_garm_vz_leg1 * t252 + minus_garm_vz_leg2 * t290
-                    + minus_garm_vz_leg3 * t327) - t201 * t337);
-        let t350 = t167 * t337 - t201 * t348;
-        Ok([[t135 * t329 - t159 * t350 + t193 * t348], [t350], [t348 + 9.81]])
+            + 0.56 * c_rod_leg3 * (t293 + rate_cross_leg3 * rate_cross_leg3)
+            + t128 * (t48 * t293);
+        let rate_dot_arm_leg3 = t108 * t319;
+        let t321 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t323 = garm_vx_leg1 * t246 + garm_vx_leg2 * t284 + garm_vx_leg3 * t321;
+        let t331 = garm_vy_leg1 * t246 + garm_vy_leg2 * t284 + garm_vy_leg3 * t321
+            - t165 * t323;
+        let t342 = t214
+            * (t196 * t323
+                - (minus_garm_vz_leg1 * t246 + minus_garm_vz_leg2 * t284
+                    + minus_garm_vz_leg3 * t321) - t204 * t331);
+        let t344 = t173 * t331 - t204 * t342;
+        Ok([[t134 * t323 - t165 * t344 + t196 * t342], [t344], [t342 + 9.81]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -7892,7 +7836,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 755 operations (302 additions, 444 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 773 intermediates.
+    /// 753 operations (301 additions, 443 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 771 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7946,305 +7890,305 @@ impl Delta {
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
         let t63 = 0.24 * s_cross_leg1;
-        let t65 = t23 * t35;
-        let t67 = 3.188775510204082 * (t65 * t65);
-        let t68 = t37 - t67;
-        let t69 = t23 * t68;
+        let t65 = 1.7857142857142858 * t35;
+        let t66 = t65 * t65;
+        let t67 = t23 * t66;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t71 = t69 - rate_dot_rod_leg1;
-        let t76 = 0.24 * rate_dot_arm_leg1;
-        let t82 = t24 * minus_rate_cross_leg1;
-        let t87 = 1.7857142857142858
-            * (c_cross_leg1 * t76 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t63 * t27 + t82 + t82);
-        let t90 = t76 - t50;
-        let t93 = t53 + 0.24 * t27;
-        let t95 = s_cross_leg1 * t90 - c_cross_leg1 * t93;
-        let t96 = c_rod_leg1 * t95;
-        let t99 = c_rod_leg1 * t63
-            * (parameters[14] * t71 - parameters[13] * (t68 + t39) - parameters[15] * t87
-                + parameters[16] * t96);
-        let t101 = t69 + rate_dot_rod_leg1;
-        let t106 = t23 * t87;
-        let t109 = s_rod_leg1 * t95;
-        let t112 = t63 * s_rod_leg1
-            * (parameters[13] * t101 - parameters[14] * (t67 + t39)
-                + parameters[15] * t106 - parameters[16] * t109);
-        let t114 = 1.7857142857142858 * t82;
-        let t115 = t114 - t87;
-        let t116 = t114 + t115;
-        let t119 = rate_rod_leg1 * (1.7857142857142858 * t35);
-        let t120 = t106 + t119;
-        let t121 = t119 + t120;
-        let t128 = s_cross_leg1 * t93 + c_cross_leg1 * t90;
-        let t132 = t99 - t112
+        let t69 = t67 - rate_dot_rod_leg1;
+        let t74 = 0.24 * rate_dot_arm_leg1;
+        let t80 = t24 * minus_rate_cross_leg1;
+        let t85 = 1.7857142857142858
+            * (c_cross_leg1 * t74 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t63 * t27 + t80 + t80);
+        let t88 = t74 - t50;
+        let t91 = t53 + 0.24 * t27;
+        let t93 = s_cross_leg1 * t88 - c_cross_leg1 * t91;
+        let t94 = c_rod_leg1 * t93;
+        let t97 = c_rod_leg1 * t63
+            * (parameters[14] * t69 - parameters[13] * (t66 + t39) - parameters[15] * t85
+                + parameters[16] * t94);
+        let t99 = t67 + rate_dot_rod_leg1;
+        let t101 = t23 * t67;
+        let t105 = t23 * t85;
+        let t108 = s_rod_leg1 * t93;
+        let t111 = t63 * s_rod_leg1
+            * (parameters[13] * t99 - parameters[14] * (t101 + t39)
+                + parameters[15] * t105 - parameters[16] * t108);
+        let t113 = 1.7857142857142858 * t80;
+        let t114 = t113 - t85;
+        let t115 = t113 + t114;
+        let t117 = rate_rod_leg1 * t65;
+        let t118 = t105 + t117;
+        let t119 = t117 + t118;
+        let t126 = s_cross_leg1 * t91 + c_cross_leg1 * t88;
+        let t130 = t97 - t111
             + t16
-                * (parameters[13] * t116 + parameters[14] * t121 + parameters[15] * t37
-                    + parameters[16] * t128);
-        let t133 = t62 + t132;
+                * (parameters[13] * t115 + parameters[14] * t119 + parameters[15] * t37
+                    + parameters[16] * t126);
+        let t131 = t62 + t130;
         let minus_gcross_vx_leg1 = grod_vy_leg1 * (t10 * c_arm_leg1);
-        let t146 = parameters[8] * t116 - parameters[7] * t120 + parameters[9] * t101
-            + parameters[10] * t119 + parameters[11] * (t68 - t39);
-        let t163 = parameters[9] * (t39 - t67)
-            - (parameters[7] * t114 + parameters[8] * t121) + parameters[10] * t115
-            - parameters[11] * t71;
-        let t171 = s_rod_leg1
-            * (t146 - parameters[12] * t119 - parameters[14] * t128
-                + parameters[15] * t109)
+        let t144 = parameters[8] * t115 - parameters[7] * t118 + parameters[9] * t99
+            + parameters[10] * t117 + parameters[11] * (t66 - t39);
+        let t161 = parameters[9] * (t39 - t101)
+            - (parameters[7] * t113 + parameters[8] * t119) + parameters[10] * t114
+            - parameters[11] * t69;
+        let t169 = s_rod_leg1
+            * (t144 - parameters[12] * t117 - parameters[14] * t126
+                + parameters[15] * t108)
             + c_rod_leg1
-                * (t163 + parameters[12] * t114 + parameters[13] * t128
-                    + parameters[15] * t96);
-        let t176 = 1.0 / c_rod_leg2;
-        let t177 = 1.7857142857142858 * t176;
+                * (t161 + parameters[12] * t113 + parameters[13] * t126
+                    + parameters[15] * t94);
+        let t174 = 1.0 / c_rod_leg2;
+        let t175 = 1.7857142857142858 * t174;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t188 = 0.5 * c_armcross_leg2;
-        let t189 = 1.0 / s_cross_leg2;
-        let t190 = c_cross_leg2 * t189;
-        let t192 = 0.5 * s_armcross_leg2;
-        let t194 = s_rod_leg2 * t176;
-        let t195 = t190 * t194;
-        let gcross_vx_leg2 = t177 * (t188 * t190 + t192 + 0.8660254037844387 * t195);
-        let t200 = 0.8660254037844387 * s_armcross_leg2;
-        let t205 = 0.24 * s_cross_leg2;
-        let t206 = 4.166666666666667 * t189;
-        let t207 = 0.8660254037844387 * c_armcross_leg2;
-        let t212 = t207 * twist[1] - t188 * twist[0] - s_armcross_leg2 * twist[2];
-        let t213 = 0.8660254037844387 * twist[0];
-        let t214 = 0.5 * twist[1];
-        let t215 = t213 + t214;
-        let t216 = t194 * t215;
-        let rate_arm_leg2 = t206 * (t212 - t216);
-        let t219 = rate_arm_leg2 * rate_arm_leg2;
-        let t229 = t192 * twist[0] - t200 * twist[1] - c_armcross_leg2 * twist[2]
-            - t190 * t212 + t195 * t215;
-        let rate_cross_leg2 = t177 * t229;
-        let t231 = t216 * rate_cross_leg2;
-        let t240 = 0.24 * c_cross_leg2;
-        let minus_rate_rod_leg2 = t177 * t215;
-        let t244 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t245 = rate_cross_leg2 * rate_cross_leg2;
-        let t249 = t207 * acceleration[1] - t188 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t240 * t219
-            + 0.56 * c_rod_leg2 * (t244 + t245);
-        let t251 = t192 * acceleration[0] - t200 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t205 * t219 + t231 + t231)
-            - t190 * t249;
-        let t252 = 0.8660254037844387 * acceleration[0];
-        let t253 = 0.5 * acceleration[1];
-        let t256 = t252 + t253 - t216 * minus_rate_rod_leg2;
-        let t259 = 1.7857142857142858 * (t251 + t195 * t256);
-        let t260 = t194 * t259;
-        let t262 = minus_rate_rod_leg2 * (1.7857142857142858 * t229);
-        let t263 = t260 - t262;
-        let t265 = 1.7857142857142858 * t231;
-        let t266 = t265 + t259;
-        let t267 = t265 + t266;
-        let t270 = t194 * t229;
-        let t272 = 3.188775510204082 * (t270 * t270);
-        let t273 = t245 - t272;
-        let t274 = t194 * t273;
-        let minus_rate_dot_rod_leg2 = t177 * t256;
-        let t276 = t274 - minus_rate_dot_rod_leg2;
-        let t283 = parameters[24] * t263 + parameters[25] * t267 + parameters[26] * t276
-            + parameters[27] * t262 + parameters[28] * (t273 - t244);
-        let t286 = 9.81 * s_arm_leg2;
-        let t288 = t286 + 0.24 * t219;
-        let rate_dot_arm_leg2 = t206 * (t249 - t194 * t256);
-        let t294 = 9.81 * c_arm_leg2;
-        let t295 = 0.24 * rate_dot_arm_leg2 - t294;
-        let t297 = s_cross_leg2 * t288 + c_cross_leg2 * t295;
-        let t302 = s_cross_leg2 * t295 - c_cross_leg2 * t288;
-        let t303 = s_rod_leg2 * t302;
-        let t307 = t263 - t262;
-        let t316 = t274 + minus_rate_dot_rod_leg2;
-        let t318 = parameters[25] * t307 - parameters[24] * t265
-            + parameters[26] * (t244 - t272) + parameters[27] * t266
-            - parameters[28] * t316;
-        let t323 = c_rod_leg2 * t302;
-        let t327 = s_rod_leg2
-            * (t283 - parameters[29] * t262 - parameters[31] * t297
-                + parameters[32] * t303)
+        let t186 = 0.5 * c_armcross_leg2;
+        let t187 = 1.0 / s_cross_leg2;
+        let t188 = c_cross_leg2 * t187;
+        let t190 = 0.5 * s_armcross_leg2;
+        let t192 = s_rod_leg2 * t174;
+        let t193 = t188 * t192;
+        let gcross_vx_leg2 = t175 * (t186 * t188 + t190 + 0.8660254037844387 * t193);
+        let t198 = 0.8660254037844387 * s_armcross_leg2;
+        let t203 = 0.24 * s_cross_leg2;
+        let t204 = 4.166666666666667 * t187;
+        let t205 = 0.8660254037844387 * c_armcross_leg2;
+        let t210 = t205 * twist[1] - t186 * twist[0] - s_armcross_leg2 * twist[2];
+        let t211 = 0.8660254037844387 * twist[0];
+        let t212 = 0.5 * twist[1];
+        let t213 = t211 + t212;
+        let t214 = t192 * t213;
+        let rate_arm_leg2 = t204 * (t210 - t214);
+        let t217 = rate_arm_leg2 * rate_arm_leg2;
+        let t227 = t190 * twist[0] - t198 * twist[1] - c_armcross_leg2 * twist[2]
+            - t188 * t210 + t193 * t213;
+        let rate_cross_leg2 = t175 * t227;
+        let t229 = t214 * rate_cross_leg2;
+        let t238 = 0.24 * c_cross_leg2;
+        let minus_rate_rod_leg2 = t175 * t213;
+        let t242 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t243 = rate_cross_leg2 * rate_cross_leg2;
+        let t247 = t205 * acceleration[1] - t186 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t238 * t217
+            + 0.56 * c_rod_leg2 * (t242 + t243);
+        let t249 = t190 * acceleration[0] - t198 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t203 * t217 + t229 + t229)
+            - t188 * t247;
+        let t250 = 0.8660254037844387 * acceleration[0];
+        let t251 = 0.5 * acceleration[1];
+        let t254 = t250 + t251 - t214 * minus_rate_rod_leg2;
+        let t257 = 1.7857142857142858 * (t249 + t193 * t254);
+        let t258 = t192 * t257;
+        let t260 = minus_rate_rod_leg2 * (1.7857142857142858 * t227);
+        let t261 = t258 - t260;
+        let t263 = 1.7857142857142858 * t229;
+        let t264 = t263 + t257;
+        let t265 = t263 + t264;
+        let t268 = t192 * t227;
+        let t270 = 3.188775510204082 * (t268 * t268);
+        let t271 = t243 - t270;
+        let t272 = t192 * t271;
+        let minus_rate_dot_rod_leg2 = t175 * t254;
+        let t274 = t272 - minus_rate_dot_rod_leg2;
+        let t281 = parameters[24] * t261 + parameters[25] * t265 + parameters[26] * t274
+            + parameters[27] * t260 + parameters[28] * (t271 - t242);
+        let t284 = 9.81 * s_arm_leg2;
+        let t286 = t284 + 0.24 * t217;
+        let rate_dot_arm_leg2 = t204 * (t247 - t192 * t254);
+        let t292 = 9.81 * c_arm_leg2;
+        let t293 = 0.24 * rate_dot_arm_leg2 - t292;
+        let t295 = s_cross_leg2 * t286 + c_cross_leg2 * t293;
+        let t300 = s_cross_leg2 * t293 - c_cross_leg2 * t286;
+        let t301 = s_rod_leg2 * t300;
+        let t305 = t261 - t260;
+        let t314 = t272 + minus_rate_dot_rod_leg2;
+        let t316 = parameters[25] * t305 - parameters[24] * t263
+            + parameters[26] * (t242 - t270) + parameters[27] * t264
+            - parameters[28] * t314;
+        let t321 = c_rod_leg2 * t300;
+        let t325 = s_rod_leg2
+            * (t281 - parameters[29] * t260 - parameters[31] * t295
+                + parameters[32] * t301)
             + c_rod_leg2
-                * (t318 + parameters[29] * t265 + parameters[30] * t297
-                    + parameters[32] * t323);
-        let minus_garm_vx_leg2 = t206 * (t188 + 0.8660254037844387 * t194);
-        let t343 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t294
-            + parameters[19] * t286 + parameters[20] * rate_dot_arm_leg2
+                * (t316 + parameters[29] * t263 + parameters[30] * t295
+                    + parameters[32] * t321);
+        let minus_garm_vx_leg2 = t204 * (t186 + 0.8660254037844387 * t192);
+        let t341 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t292
+            + parameters[19] * t284 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t353 = c_rod_leg2 * t205
-            * (parameters[31] * t316 - parameters[30] * (t273 + t244)
-                + parameters[32] * t259 + parameters[33] * t323);
-        let t363 = t205 * s_rod_leg2
-            * (parameters[30] * t276 - parameters[31] * (t272 + t244)
-                - parameters[32] * t260 - parameters[33] * t303);
-        let t373 = t353 - t363
-            - t240
-                * (parameters[31] * t307 - parameters[30] * t267 - parameters[32] * t245
-                    - parameters[33] * t297);
-        let t374 = t343 + t373;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t176;
-        let t387 = parameters[25] * (t272 - t273) - parameters[24] * t274
-            + parameters[26] * t260 + parameters[27] * t274 + parameters[28] * t259;
-        let t393 = t387 - parameters[29] * minus_rate_dot_rod_leg2
-            - parameters[30] * t303 - parameters[31] * t323;
-        let t399 = 1.0 / s_cross_leg3;
-        let t400 = 4.166666666666667 * t399;
-        let t403 = 1.0 / c_rod_leg3;
-        let t404 = s_rod_leg3 * t403;
+        let t351 = c_rod_leg2 * t203
+            * (parameters[31] * t314 - parameters[30] * (t271 + t242)
+                + parameters[32] * t257 + parameters[33] * t321);
+        let t361 = t203 * s_rod_leg2
+            * (parameters[30] * t274 - parameters[31] * (t270 + t242)
+                - parameters[32] * t258 - parameters[33] * t301);
+        let t371 = t351 - t361
+            - t238
+                * (parameters[31] * t305 - parameters[30] * t265 - parameters[32] * t243
+                    - parameters[33] * t295);
+        let t372 = t341 + t371;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t174;
+        let t385 = parameters[25] * (t270 - t271) - parameters[24] * t272
+            + parameters[26] * t258 + parameters[27] * t272 + parameters[28] * t257;
+        let t391 = t385 - parameters[29] * minus_rate_dot_rod_leg2
+            - parameters[30] * t301 - parameters[31] * t321;
+        let t397 = 1.0 / s_cross_leg3;
+        let t398 = 4.166666666666667 * t397;
+        let t401 = 1.0 / c_rod_leg3;
+        let t402 = s_rod_leg3 * t401;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t414 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t400 * (0.8660254037844387 * t404 - t414);
-        let t417 = 0.24 * c_cross_leg3;
-        let t418 = t213 - t214;
-        let t419 = t404 * t418;
-        let t421 = 0.8660254037844387 * c_armcross_leg3;
-        let t425 = t414 * twist[0] + t421 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t400 * (t419 - t425);
-        let t428 = rate_arm_leg3 * rate_arm_leg3;
-        let t431 = 1.7857142857142858 * t403;
-        let rate_rod_leg3 = t431 * t418;
-        let t433 = rate_rod_leg3 * rate_rod_leg3;
-        let t434 = c_cross_leg3 * t399;
-        let t436 = 0.5 * s_armcross_leg3;
-        let t438 = 0.8660254037844387 * s_armcross_leg3;
-        let t444 = t404 * t434;
-        let t446 = t434 * t425 + t436 * twist[0] + t438 * twist[1]
-            - c_armcross_leg3 * twist[2] - t444 * t418;
-        let rate_cross_leg3 = t431 * t446;
-        let t448 = rate_cross_leg3 * rate_cross_leg3;
-        let t457 = t417 * t428 + 0.56 * c_rod_leg3 * (t433 + t448)
-            - (t414 * acceleration[0] + t421 * acceleration[1]
+        let t412 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t398 * (0.8660254037844387 * t402 - t412);
+        let t415 = 0.24 * c_cross_leg3;
+        let t416 = t211 - t212;
+        let t417 = t402 * t416;
+        let t419 = 0.8660254037844387 * c_armcross_leg3;
+        let t423 = t412 * twist[0] + t419 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t398 * (t417 - t423);
+        let t426 = rate_arm_leg3 * rate_arm_leg3;
+        let t429 = 1.7857142857142858 * t401;
+        let rate_rod_leg3 = t429 * t416;
+        let t431 = rate_rod_leg3 * rate_rod_leg3;
+        let t432 = c_cross_leg3 * t397;
+        let t434 = 0.5 * s_armcross_leg3;
+        let t436 = 0.8660254037844387 * s_armcross_leg3;
+        let t442 = t402 * t432;
+        let t444 = t432 * t423 + t434 * twist[0] + t436 * twist[1]
+            - c_armcross_leg3 * twist[2] - t442 * t416;
+        let rate_cross_leg3 = t429 * t444;
+        let t446 = rate_cross_leg3 * rate_cross_leg3;
+        let t455 = t415 * t426 + 0.56 * c_rod_leg3 * (t431 + t446)
+            - (t412 * acceleration[0] + t419 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t460 = t252 - t253 + t419 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t400 * (t457 + t404 * t460);
-        let t465 = 9.81 * c_arm_leg3;
-        let t468 = 9.81 * s_arm_leg3;
-        let t477 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t465
-            + parameters[36] * t468 + parameters[37] * rate_dot_arm_leg3
+        let t458 = t250 - t251 + t417 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t398 * (t455 + t402 * t458);
+        let t463 = 9.81 * c_arm_leg3;
+        let t466 = 9.81 * s_arm_leg3;
+        let t475 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t463
+            + parameters[36] * t466 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t478 = 0.24 * s_cross_leg3;
-        let t480 = t404 * t446;
-        let t482 = 3.188775510204082 * (t480 * t480);
-        let t483 = t448 - t482;
-        let t484 = t404 * t483;
-        let rate_dot_rod_leg3 = t431 * t460;
-        let t486 = t484 - rate_dot_rod_leg3;
-        let t497 = t419 * rate_cross_leg3;
-        let t502 = t436 * acceleration[0] + t438 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t478 * t428 - t497 - t497)
-            - t434 * t457;
-        let t505 = 1.7857142857142858 * (t502 - t444 * t460);
-        let t509 = 0.24 * rate_dot_arm_leg3 - t465;
-        let t512 = t468 + 0.24 * t428;
-        let t514 = s_cross_leg3 * t509 - c_cross_leg3 * t512;
-        let t515 = c_rod_leg3 * t514;
-        let t518 = c_rod_leg3 * t478
-            * (parameters[48] * t486 - parameters[47] * (t483 + t433)
-                + parameters[49] * t505 + parameters[50] * t515);
-        let t520 = t484 + rate_dot_rod_leg3;
-        let t525 = t404 * t505;
-        let t528 = s_rod_leg3 * t514;
-        let t531 = t478 * s_rod_leg3
-            * (parameters[47] * t520 - parameters[48] * (t482 + t433)
-                - parameters[49] * t525 - parameters[50] * t528);
-        let t533 = 1.7857142857142858 * t497;
-        let t534 = t505 - t533;
-        let t535 = t533 - t534;
-        let t538 = rate_rod_leg3 * (1.7857142857142858 * t446);
-        let t539 = t525 + t538;
-        let t540 = t538 + t539;
-        let t547 = s_cross_leg3 * t512 + c_cross_leg3 * t509;
-        let t551 = t518 - t531
-            - t417
-                * (parameters[47] * t535 + parameters[48] * t540 - parameters[49] * t448
-                    - parameters[50] * t547);
-        let t552 = t477 + t551;
-        let gcross_vx_leg3 = t431 * (t414 * t434 + t436 - 0.8660254037844387 * t444);
-        let t568 = parameters[41] * t539 - parameters[42] * t535 + parameters[43] * t520
-            - parameters[44] * t538 + parameters[45] * (t483 - t433);
-        let t585 = parameters[41] * t533 + parameters[42] * t540
-            + parameters[43] * (t433 - t482) + parameters[44] * t534
-            - parameters[45] * t486;
-        let t593 = s_rod_leg3
-            * (t568 + parameters[46] * t538 - parameters[48] * t547
-                + parameters[49] * t528)
+        let t476 = 0.24 * s_cross_leg3;
+        let t478 = t402 * t444;
+        let t480 = 3.188775510204082 * (t478 * t478);
+        let t481 = t446 - t480;
+        let t482 = t402 * t481;
+        let rate_dot_rod_leg3 = t429 * t458;
+        let t484 = t482 - rate_dot_rod_leg3;
+        let t495 = t417 * rate_cross_leg3;
+        let t500 = t434 * acceleration[0] + t436 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t476 * t426 - t495 - t495)
+            - t432 * t455;
+        let t503 = 1.7857142857142858 * (t500 - t442 * t458);
+        let t507 = 0.24 * rate_dot_arm_leg3 - t463;
+        let t510 = t466 + 0.24 * t426;
+        let t512 = s_cross_leg3 * t507 - c_cross_leg3 * t510;
+        let t513 = c_rod_leg3 * t512;
+        let t516 = c_rod_leg3 * t476
+            * (parameters[48] * t484 - parameters[47] * (t481 + t431)
+                + parameters[49] * t503 + parameters[50] * t513);
+        let t518 = t482 + rate_dot_rod_leg3;
+        let t523 = t402 * t503;
+        let t526 = s_rod_leg3 * t512;
+        let t529 = t476 * s_rod_leg3
+            * (parameters[47] * t518 - parameters[48] * (t480 + t431)
+                - parameters[49] * t523 - parameters[50] * t526);
+        let t531 = 1.7857142857142858 * t495;
+        let t532 = t503 - t531;
+        let t533 = t531 - t532;
+        let t536 = rate_rod_leg3 * (1.7857142857142858 * t444);
+        let t537 = t523 + t536;
+        let t538 = t536 + t537;
+        let t545 = s_cross_leg3 * t510 + c_cross_leg3 * t507;
+        let t549 = t516 - t529
+            - t415
+                * (parameters[47] * t533 + parameters[48] * t538 - parameters[49] * t446
+                    - parameters[50] * t545);
+        let t550 = t475 + t549;
+        let gcross_vx_leg3 = t429 * (t412 * t432 + t434 - 0.8660254037844387 * t442);
+        let t566 = parameters[41] * t537 - parameters[42] * t533 + parameters[43] * t518
+            - parameters[44] * t536 + parameters[45] * (t481 - t431);
+        let t583 = parameters[41] * t531 + parameters[42] * t538
+            + parameters[43] * (t431 - t480) + parameters[44] * t532
+            - parameters[45] * t484;
+        let t591 = s_rod_leg3
+            * (t566 + parameters[46] * t536 - parameters[48] * t545
+                + parameters[49] * t526)
             + c_rod_leg3
-                * (t585 - parameters[46] * t533 + parameters[47] * t547
-                    + parameters[49] * t515);
-        let grod_vx_leg3 = 1.5464739353293548 * t403;
-        let t606 = parameters[42] * (t482 - t483) - parameters[41] * t484
-            + parameters[43] * t525 + parameters[44] * t484 + parameters[45] * t505;
-        let t612 = t606 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t528
-            - parameters[48] * t515;
-        let t615 = garm_vx_leg1 * t133 - minus_gcross_vx_leg1 * t171
-            + gcross_vx_leg2 * t327 - minus_garm_vx_leg2 * t374
-            - minus_grod_vx_leg2 * t393 + garm_vx_leg3 * t552 + gcross_vx_leg3 * t593
-            + grod_vx_leg3 * t612;
-        let t619 = t615 + acceleration[0] * parameters[51]
+                * (t583 - parameters[46] * t531 + parameters[47] * t545
+                    + parameters[49] * t513);
+        let grod_vx_leg3 = 1.5464739353293548 * t401;
+        let t604 = parameters[42] * (t480 - t481) - parameters[41] * t482
+            + parameters[43] * t523 + parameters[44] * t482 + parameters[45] * t503;
+        let t610 = t604 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t526
+            - parameters[48] * t513;
+        let t613 = garm_vx_leg1 * t131 - minus_gcross_vx_leg1 * t169
+            + gcross_vx_leg2 * t325 - minus_garm_vx_leg2 * t372
+            - minus_grod_vx_leg2 * t391 + garm_vx_leg3 * t550 + gcross_vx_leg3 * t591
+            + grod_vx_leg3 * t610;
+        let t617 = t613 + acceleration[0] * parameters[51]
             + acceleration[0] * parameters[52];
-        let t624 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
+        let t622 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t624, 14.869730172897302, "actuators")?;
-        let t625 = 1.0 / t624;
+        ::overact::guard::platform(t622, 14.869730172897302, "actuators")?;
+        let t623 = 1.0 / t622;
         let garm_vy_leg1 = t11 * t23;
-        let garm_vy_leg2 = t206 * (t207 - 0.5 * t194);
-        let minus_garm_vy_leg3 = t400 * (t421 + 0.5 * t404);
-        let t638 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg2 = t204 * (t205 - 0.5 * t192);
+        let minus_garm_vy_leg3 = t398 * (t419 + 0.5 * t402);
+        let t636 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t639 = t638 * t625;
-        let t646 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t638 * t639;
-        ::overact::guard::platform(t646, 14.869730172897306, "actuators")?;
-        let t647 = 1.0 / t646;
+        let t637 = t636 * t623;
+        let t644 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t636 * t637;
+        ::overact::guard::platform(t644, 14.869730172897306, "actuators")?;
+        let t645 = 1.0 / t644;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t662 = parameters[8] * (t67 - t68) - parameters[7] * t69
-            - parameters[9] * t106 + parameters[10] * t69 - parameters[11] * t87;
-        let t670 = garm_vy_leg1 * t133 - minus_gcross_vy_leg1 * t171
+        let t660 = parameters[8] * (t101 - t66) - parameters[7] * t67
+            - parameters[9] * t105 + parameters[10] * t67 - parameters[11] * t85;
+        let t668 = garm_vy_leg1 * t131 - minus_gcross_vy_leg1 * t169
             + grod_vy_leg1
-                * (t662 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t109
-                    - parameters[14] * t96);
-        let gcross_vy_leg2 = t177 * (0.5 * t195 - (t207 * t190 + t200));
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t176;
-        let gcross_vy_leg3 = t431 * (t421 * t434 + t438 + 0.5 * t444);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t403;
-        let t694 = t670 + garm_vy_leg2 * t374 + gcross_vy_leg2 * t327
-            - minus_grod_vy_leg2 * t393 + gcross_vy_leg3 * t593
-            - minus_garm_vy_leg3 * t552 - minus_grod_vy_leg3 * t612;
-        let t700 = t694 + acceleration[1] * parameters[51]
-            + acceleration[1] * parameters[52] - t619 * t639;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t400;
+                * (t660 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t108
+                    - parameters[14] * t94);
+        let gcross_vy_leg2 = t175 * (0.5 * t193 - (t205 * t188 + t198));
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t174;
+        let gcross_vy_leg3 = t429 * (t419 * t432 + t436 + 0.5 * t442);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t401;
+        let t692 = t668 + garm_vy_leg2 * t372 + gcross_vy_leg2 * t325
+            - minus_grod_vy_leg2 * t391 + gcross_vy_leg3 * t591
+            - minus_garm_vy_leg3 * t550 - minus_grod_vy_leg3 * t610;
+        let t698 = t692 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t617 * t637;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t398;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t206;
-        let t714 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t204;
+        let t712 = minus_garm_vx_leg2 * minus_garm_vz_leg2
             - garm_vx_leg1 * minus_garm_vz_leg1 - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t715 = t714 * t625;
-        let t717 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+        let t713 = t712 * t623;
+        let t715 = minus_garm_vy_leg3 * minus_garm_vz_leg3
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            - t638 * t715;
-        let t718 = t717 * t647;
-        let gcross_vz_leg2 = t177 * (t189 * s_arm_leg2);
+            - t636 * t713;
+        let t716 = t715 * t645;
+        let gcross_vz_leg2 = t175 * (t187 * s_arm_leg2);
         let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t10 * s_arm_leg1);
-        let gcross_vz_leg3 = t431 * (t399 * s_arm_leg3);
-        let t735 = gcross_vz_leg2 * t327 - minus_garm_vz_leg2 * t374
-            - (minus_garm_vz_leg1 * t133 - minus_minus_gcross_vz_leg1 * t171)
-            + gcross_vz_leg3 * t593 - minus_garm_vz_leg3 * t552;
-        let t736 = acceleration[2] + 9.81;
-        let t753 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let gcross_vz_leg3 = t429 * (t397 * s_arm_leg3);
+        let t733 = gcross_vz_leg2 * t325 - minus_garm_vz_leg2 * t372
+            - (minus_garm_vz_leg1 * t131 - minus_minus_gcross_vz_leg1 * t169)
+            + gcross_vz_leg3 * t591 - minus_garm_vz_leg3 * t550;
+        let t734 = acceleration[2] + 9.81;
+        let t751 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t714 * t715 - t717 * t718;
-        ::overact::guard::platform(t753, 34.8553502013929, "actuators")?;
-        let t754 = (t735 + parameters[51] * t736 + parameters[52] * t736 - t619 * t715
-            - t718 * t700) / t753;
-        let t756 = t647 * t700 - t718 * t754;
-        let t760 = t619 * t625 - t639 * t756 - t715 * t754;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t712 * t713 - t715 * t716;
+        ::overact::guard::platform(t751, 34.8553502013929, "actuators")?;
+        let t752 = (t733 + parameters[51] * t734 + parameters[52] * t734 - t617 * t713
+            - t716 * t698) / t751;
+        let t754 = t645 * t698 - t716 * t752;
+        let t758 = t617 * t623 - t637 * t754 - t713 * t752;
         Ok([
-            garm_vx_leg1 * t760 + garm_vy_leg1 * t756 - minus_garm_vz_leg1 * t754,
-            garm_vy_leg2 * t756 - minus_garm_vx_leg2 * t760 - minus_garm_vz_leg2 * t754,
-            garm_vx_leg3 * t760 - minus_garm_vy_leg3 * t756 - minus_garm_vz_leg3 * t754,
+            garm_vx_leg1 * t758 + garm_vy_leg1 * t754 - minus_garm_vz_leg1 * t752,
+            garm_vy_leg2 * t754 - minus_garm_vx_leg2 * t758 - minus_garm_vz_leg2 * t752,
+            garm_vx_leg3 * t758 - minus_garm_vy_leg3 * t754 - minus_garm_vz_leg3 * t752,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).

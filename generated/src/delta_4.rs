@@ -2354,7 +2354,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 743 operations (209 additions, 526 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 594 intermediates.
+    /// 747 operations (207 additions, 532 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 598 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2414,12 +2414,12 @@ impl Delta4 {
         let minus_gcross_vx_leg1 = c_arm_leg1 * t68;
         let t70 = 1.8867924528301887 * t35;
         let t71 = rate_rod_leg1 * t70;
-        let t72 = 0.2 * s_cross_leg1;
-        let t74 = 0.2 * rate_dot_arm_leg1;
-        let t80 = t72 * t27 + c_cross_leg1 * t74 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2];
-        let t81 = t24 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t80 + t81 + t81);
+        let t72 = 0.2 * rate_dot_arm_leg1;
+        let t77 = 0.2 * s_cross_leg1;
+        let t79 = t24 * minus_rate_cross_leg1;
+        let t83 = c_cross_leg1 * t72 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t77 * t27 + t79 + t79;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t83;
         let t85 = s_rod_leg1 * minus_rate_dot_cross_leg1;
         let t87 = t71 + t85 + t71;
         let t88 = s_rod_leg1 * t87;
@@ -2428,398 +2428,400 @@ impl Delta4 {
         let t94 = t23 * t93;
         let t95 = grod_vy_leg1 * t94;
         let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t68;
-        let t99 = t88 - minus_rate_dot_cross_leg1;
-        let t102 = t23 * t99 - c_rod_leg1 * t87;
-        let t104 = t23 * t94;
+        let t103 = s_rod_leg1 * t71 + c_rod_leg1 * (1.8867924528301887 * (t79 - t83));
+        let t106 = t23 * t103 - c_rod_leg1 * t87;
+        let t108 = t23 * t94;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t111 = t94 + rate_dot_rod_leg1;
-        let t115 = s_rod_leg1 * t111 + c_rod_leg1 * (t39 - t104);
-        let t125 = 1.8867924528301887 * acceleration[1];
-        let t134 = c_rod_leg1 * t72;
-        let t137 = t72 * s_rod_leg1;
-        let t140 = 0.37735849056603776 * (c_cross_leg1 * t80) + t134 * (t93 + t39)
-            + t137 * t111;
-        let t143 = t58 + 0.2 * t27;
-        let t145 = t74 - t54;
-        let t147 = s_cross_leg1 * t143 + c_cross_leg1 * t145;
-        let t148 = c_rod_leg1 * t147;
-        let t152 = 0.2 * t145;
-        let t153 = garm_vy_leg1 * t152;
-        let t165 = t134 * (t94 - rate_dot_rod_leg1) + t137 * (t104 + t39) + t16 * t87;
-        let t167 = s_rod_leg1 * t147;
-        let t175 = s_cross_leg1 * t145 - c_cross_leg1 * t143;
-        let t183 = t16 * t37 - t72 * minus_rate_dot_cross_leg1;
-        let t197 = 1.0 / s_cross_leg2;
-        let t198 = 5.0 * t197;
-        let t201 = 1.0 / c_rod_leg2;
-        let t202 = s_rod_leg2 * t201;
-        let minus_garm_vx_leg2 = t198 * t202;
+        let t115 = t94 + rate_dot_rod_leg1;
+        let t119 = s_rod_leg1 * t115 + c_rod_leg1 * (t39 - t108);
+        let t129 = 1.8867924528301887 * acceleration[1];
+        let t138 = c_rod_leg1 * t77;
+        let t141 = t77 * s_rod_leg1;
+        let t144 = t16 * (t22 * t103) - (t138 * (t93 + t39) + t141 * t115);
+        let t147 = t58 + 0.2 * t27;
+        let t149 = t72 - t54;
+        let t151 = s_cross_leg1 * t147 + c_cross_leg1 * t149;
+        let t152 = c_rod_leg1 * t151;
+        let t156 = 0.2 * t149;
+        let t157 = garm_vy_leg1 * t156;
+        let t169 = t138 * (t94 - rate_dot_rod_leg1) + t141 * (t108 + t39) + t16 * t87;
+        let t171 = s_rod_leg1 * t151;
+        let t179 = s_cross_leg1 * t149 - c_cross_leg1 * t147;
+        let t187 = t16 * t37 - t77 * minus_rate_dot_cross_leg1;
+        let t201 = 1.0 / s_cross_leg2;
+        let t202 = 5.0 * t201;
+        let t205 = 1.0 / c_rod_leg2;
+        let t206 = s_rod_leg2 * t205;
+        let minus_garm_vx_leg2 = t202 * t206;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t215 = 0.2 * c_cross_leg2;
-        let t219 = t202 * twist[0];
-        let rate_arm_leg2 = t198
-            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t219);
-        let t222 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t201;
+        let t219 = 0.2 * c_cross_leg2;
+        let t223 = t206 * twist[0];
+        let rate_arm_leg2 = t202
+            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t223);
+        let t226 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t205;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t227 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t232 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t215 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t232;
-        let t234 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t240 = acceleration[0] - t219 * minus_rate_rod_leg2;
-        let t242 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + t215 * t222 + 0.53 * c_rod_leg2 * (t227 + t234) - t202 * t240;
-        let rate_dot_arm_leg2 = t198 * t242;
-        let t244 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t198;
-        let t246 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t198;
-        let t248 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t249 = 9.81 * c_arm_leg2;
-        let t253 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t215 * minus_garm_vx_leg2);
-        let t268 = 0.2 * s_cross_leg2;
-        let t270 = t219 * minus_rate_cross_leg2;
+        let t231 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t236 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t219 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t236;
+        let t238 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t244 = acceleration[0] - t223 * minus_rate_rod_leg2;
+        let t246 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + t219 * t226 + 0.53 * c_rod_leg2 * (t231 + t238) - t206 * t244;
+        let rate_dot_arm_leg2 = t202 * t246;
+        let t248 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t202;
+        let t250 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t202;
+        let t252 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t253 = 9.81 * c_arm_leg2;
+        let t257 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t219 * minus_garm_vx_leg2);
+        let t269 = 0.2 * s_cross_leg2;
         let t274 = 0.2 * rate_dot_arm_leg2;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + t268 * t222 - (t270 + t270) + c_cross_leg2 * t274);
-        let t278 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t279 = 1.8867924528301887 * t232;
-        let t280 = minus_rate_rod_leg2 * t279;
-        let t282 = t280 - t278 + t280;
-        let t283 = s_rod_leg2 * t282;
-        let t285 = t279 * t279;
-        let t286 = t202 * t285;
-        let t287 = minus_grod_vx_leg2 * t286;
-        let t289 = t197 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t289;
-        let gcross_vz_leg2 = s_arm_leg2 * t289;
-        let t294 = minus_rate_dot_cross_leg2 + t283;
-        let t297 = c_rod_leg2 * t282 - t202 * t294;
-        let t299 = t202 * t286;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t240;
-        let t306 = t286 - minus_rate_dot_rod_leg2;
-        let t310 = s_rod_leg2 * t306 + c_rod_leg2 * (t227 - t299);
-        let t320 = 1.8867924528301887 * acceleration[0];
-        let t329 = c_rod_leg2 * t268;
-        let t332 = t268 * s_rod_leg2;
-        let t335 = t215 * (t201 * t294) + t329 * (t285 + t227) + t332 * t306;
-        let t337 = t274 - t249;
-        let t338 = 0.2 * t337;
-        let t339 = minus_garm_vx_leg2 * t338;
-        let t344 = t253 + 0.2 * t222;
-        let t347 = s_cross_leg2 * t344 + c_cross_leg2 * t337;
-        let t348 = c_rod_leg2 * t347;
-        let t356 = s_cross_leg2 * t337 - c_cross_leg2 * t344;
-        let t364 = t329 * (t286 + minus_rate_dot_rod_leg2) + t332 * (t299 + t227)
-            - t215 * t282;
-        let t366 = s_rod_leg2 * t347;
-        let t379 = t215 * t234 - t268 * minus_rate_dot_cross_leg2;
+        let t277 = t269 * t226 + s_armcross_leg2 * acceleration[1]
+            + c_armcross_leg2 * acceleration[2] + c_cross_leg2 * t274;
+        let t278 = t223 * minus_rate_cross_leg2;
+        let rate_dot_cross_leg2 = minus_grod_vx_leg2 * (t278 + t278 - t277);
+        let t282 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t283 = 1.8867924528301887 * t236;
+        let t284 = minus_rate_rod_leg2 * t283;
+        let t286 = t282 + t284 + t284;
+        let t287 = s_rod_leg2 * t286;
+        let t289 = t283 * t283;
+        let t290 = t206 * t289;
+        let t291 = minus_grod_vx_leg2 * t290;
+        let t293 = t201 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t293;
+        let gcross_vz_leg2 = s_arm_leg2 * t293;
+        let t298 = 1.8867924528301887 * t277;
+        let t299 = c_rod_leg2 * t298;
+        let t302 = c_rod_leg2 * t286 - t206 * t299;
+        let t304 = t206 * t290;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t244;
+        let t311 = t290 - minus_rate_dot_rod_leg2;
+        let t315 = s_rod_leg2 * t311 + c_rod_leg2 * (t231 - t304);
+        let t325 = 1.8867924528301887 * acceleration[0];
+        let t333 = c_rod_leg2 * t269;
+        let t336 = t269 * s_rod_leg2;
+        let t339 = t219 * t298 + t333 * (t289 + t231) + t336 * t311;
+        let t341 = t274 - t253;
+        let t342 = 0.2 * t341;
+        let t343 = minus_garm_vx_leg2 * t342;
+        let t348 = t257 + 0.2 * t226;
+        let t351 = s_cross_leg2 * t348 + c_cross_leg2 * t341;
+        let t352 = c_rod_leg2 * t351;
+        let t360 = s_cross_leg2 * t341 - c_cross_leg2 * t348;
+        let t368 = t333 * (t290 + minus_rate_dot_rod_leg2) + t336 * (t304 + t231)
+            - t219 * t286;
+        let t370 = s_rod_leg2 * t351;
+        let t383 = t269 * rate_dot_cross_leg2 + t219 * t238;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t400 = 1.0 / s_cross_leg3;
-        let t401 = 5.0 * t400;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t401;
-        let t403 = 0.2 * c_cross_leg3;
-        let t409 = 1.0 / c_rod_leg3;
-        let t410 = s_rod_leg3 * t409;
-        let t411 = t410 * twist[1];
-        let minus_rate_arm_leg3 = t401
-            * (c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t411);
-        let t414 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t409;
+        let t404 = 1.0 / s_cross_leg3;
+        let t405 = 5.0 * t404;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t405;
+        let t407 = 0.2 * c_cross_leg3;
+        let t413 = 1.0 / c_rod_leg3;
+        let t414 = s_rod_leg3 * t413;
+        let t415 = t414 * twist[1];
+        let minus_rate_arm_leg3 = t405
+            * (c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t415);
+        let t418 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
+        let minus_grod_vy_leg3 = 1.8867924528301887 * t413;
         let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t419 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t424 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
-            + t403 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t424;
-        let t426 = rate_cross_leg3 * rate_cross_leg3;
-        let t435 = acceleration[1] - t411 * minus_rate_rod_leg3;
-        let t437 = t403 * t414 + 0.53 * c_rod_leg3 * (t419 + t426)
+        let t423 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t428 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
+            + t407 * minus_rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t428;
+        let t430 = rate_cross_leg3 * rate_cross_leg3;
+        let t439 = acceleration[1] - t415 * minus_rate_rod_leg3;
+        let t441 = t407 * t418 + 0.53 * c_rod_leg3 * (t423 + t430)
             - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2])
-            - t410 * t435;
-        let rate_dot_arm_leg3 = t401 * t437;
-        let t439 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t401 * t410;
-        let t441 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t401;
-        let t443 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t444 = 9.81 * c_arm_leg3;
-        let t448 = 9.81 * s_arm_leg3;
-        let t458 = t400 * minus_grod_vy_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t458;
-        let t463 = 0.2 * s_cross_leg3;
-        let t465 = t411 * rate_cross_leg3;
+            - t414 * t439;
+        let rate_dot_arm_leg3 = t405 * t441;
+        let t443 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t405 * t414;
+        let t445 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t405;
+        let t447 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t448 = 9.81 * c_arm_leg3;
+        let t452 = 9.81 * s_arm_leg3;
+        let t462 = t404 * minus_grod_vy_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t462;
+        let t464 = 0.2 * s_cross_leg3;
         let t469 = 0.2 * rate_dot_arm_leg3;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-                - (t463 * t414 + t465 + t465) - c_cross_leg3 * t469);
-        let t473 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t474 = 1.8867924528301887 * t424;
-        let t475 = minus_rate_rod_leg3 * t474;
-        let t477 = t473 - t475 - t475;
-        let t478 = s_rod_leg3 * t477;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t403 * minus_garm_vy_leg3);
-        let t483 = t474 * t474;
-        let t484 = t410 * t483;
-        let t485 = minus_grod_vy_leg3 * t484;
-        let gcross_vz_leg3 = s_arm_leg3 * t458;
-        let t489 = rate_dot_cross_leg3 - t478;
-        let t492 = t410 * t489 + c_rod_leg3 * t477;
-        let t495 = t410 * t484;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t435;
-        let t501 = t484 - minus_rate_dot_rod_leg3;
-        let t505 = s_rod_leg3 * t501 + c_rod_leg3 * (t419 - t495);
-        let t522 = t448 + 0.2 * t414;
-        let t524 = t469 - t444;
-        let t526 = s_cross_leg3 * t522 + c_cross_leg3 * t524;
-        let t527 = c_rod_leg3 * t526;
-        let t531 = c_rod_leg3 * t463;
-        let t534 = t463 * s_rod_leg3;
-        let t537 = t403 * (t409 * t489) - (t531 * (t483 + t419) + t534 * t501);
-        let t541 = 0.2 * t524;
-        let t542 = minus_garm_vy_leg3 * t541;
-        let t554 = t531 * (t484 + minus_rate_dot_rod_leg3) + t534 * (t495 + t419)
-            - t403 * t477;
-        let t556 = s_rod_leg3 * t526;
-        let t561 = s_cross_leg3 * t524 - c_cross_leg3 * t522;
-        let t573 = t463 * rate_dot_cross_leg3 + t403 * t426;
-        let t586 = 1.0 / s_cross_leg4;
-        let t587 = 5.0 * t586;
-        let t590 = 1.0 / c_rod_leg4;
-        let t591 = s_rod_leg4 * t590;
-        let garm_vx_leg4 = t587 * t591;
-        let t593 = 0.2 * c_cross_leg4;
-        let t594 = t591 * twist[0];
+        let t472 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - c_cross_leg3 * t469 - t464 * t418;
+        let t473 = t415 * rate_cross_leg3;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * (t472 - (t473 + t473));
+        let t477 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t478 = 1.8867924528301887 * t428;
+        let t479 = minus_rate_rod_leg3 * t478;
+        let t481 = t477 - t479 - t479;
+        let t482 = s_rod_leg3 * t481;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t407 * minus_garm_vy_leg3);
+        let t487 = t478 * t478;
+        let t488 = t414 * t487;
+        let t489 = minus_grod_vy_leg3 * t488;
+        let gcross_vz_leg3 = s_arm_leg3 * t462;
+        let t493 = 1.8867924528301887 * t472;
+        let t494 = c_rod_leg3 * t493;
+        let t497 = t414 * t494 + c_rod_leg3 * t481;
+        let t500 = t414 * t488;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t439;
+        let t506 = t488 - minus_rate_dot_rod_leg3;
+        let t510 = s_rod_leg3 * t506 + c_rod_leg3 * (t423 - t500);
+        let t527 = t452 + 0.2 * t418;
+        let t529 = t469 - t448;
+        let t531 = s_cross_leg3 * t527 + c_cross_leg3 * t529;
+        let t532 = c_rod_leg3 * t531;
+        let t535 = c_rod_leg3 * t464;
+        let t538 = t464 * s_rod_leg3;
+        let t541 = t407 * t493 - (t535 * (t487 + t423) + t538 * t506);
+        let t545 = 0.2 * t529;
+        let t546 = minus_garm_vy_leg3 * t545;
+        let t558 = t535 * (t488 + minus_rate_dot_rod_leg3) + t538 * (t500 + t423)
+            - t407 * t481;
+        let t560 = s_rod_leg3 * t531;
+        let t565 = s_cross_leg3 * t529 - c_cross_leg3 * t527;
+        let t577 = t464 * rate_dot_cross_leg3 + t407 * t430;
+        let t590 = 1.0 / s_cross_leg4;
+        let t591 = 5.0 * t590;
+        let t594 = 1.0 / c_rod_leg4;
+        let t595 = s_rod_leg4 * t594;
+        let garm_vx_leg4 = t591 * t595;
+        let t597 = 0.2 * c_cross_leg4;
+        let t598 = t595 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let rate_arm_leg4 = t587
-            * (t594 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]));
-        let t608 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t590;
+        let rate_arm_leg4 = t591
+            * (t598 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]));
+        let t612 = rate_arm_leg4 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.8867924528301887 * t594;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t613 = rate_rod_leg4 * rate_rod_leg4;
-        let t618 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
-            - t593 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t618;
-        let t620 = rate_cross_leg4 * rate_cross_leg4;
-        let t629 = acceleration[0] + t594 * rate_rod_leg4;
-        let t631 = t593 * t608 + 0.53 * c_rod_leg4 * (t613 + t620)
+        let t617 = rate_rod_leg4 * rate_rod_leg4;
+        let t622 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
+            - t597 * rate_arm_leg4;
+        let rate_cross_leg4 = grod_vx_leg4 * t622;
+        let t624 = rate_cross_leg4 * rate_cross_leg4;
+        let t633 = acceleration[0] + t598 * rate_rod_leg4;
+        let t635 = t597 * t612 + 0.53 * c_rod_leg4 * (t617 + t624)
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2])
-            + t591 * t629;
-        let rate_dot_arm_leg4 = t587 * t631;
-        let t633 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t587;
-        let t635 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t587;
-        let t637 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let t638 = 9.81 * c_arm_leg4;
-        let t642 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t593 * garm_vx_leg4);
-        let t654 = 1.8867924528301887 * t618;
-        let t655 = rate_rod_leg4 * t654;
-        let t659 = 0.2 * s_cross_leg4;
-        let t661 = t594 * rate_cross_leg4;
+            + t595 * t633;
+        let rate_dot_arm_leg4 = t591 * t635;
+        let t637 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t591;
+        let t639 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t591;
+        let t641 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let t642 = 9.81 * c_arm_leg4;
+        let t646 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t597 * garm_vx_leg4);
+        let t658 = 1.8867924528301887 * t622;
+        let t659 = rate_rod_leg4 * t658;
+        let t660 = 0.2 * s_cross_leg4;
         let t665 = 0.2 * rate_dot_arm_leg4;
-        let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-                - (t659 * t608 - (t661 + t661)) - c_cross_leg4 * t665);
-        let t669 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t671 = t655 + t669 + t655;
-        let t672 = s_rod_leg4 * t671;
-        let t674 = t654 * t654;
-        let t675 = t591 * t674;
-        let t676 = grod_vx_leg4 * t675;
-        let t678 = t586 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t678;
-        let gcross_vz_leg4 = s_arm_leg4 * t678;
-        let t683 = t591 * t675;
-        let t687 = rate_dot_cross_leg4 - t672;
-        let t689 = c_rod_leg4 * t671 + t591 * t687;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t629;
-        let t696 = t675 + rate_dot_rod_leg4;
-        let t700 = s_rod_leg4 * t696 + c_rod_leg4 * (t613 - t683);
-        let t715 = c_rod_leg4 * t659;
-        let t718 = t659 * s_rod_leg4;
-        let t723 = t715 * (t674 + t613) + t718 * t696 - t593 * (t590 * t687);
-        let t725 = t665 - t638;
-        let t726 = 0.2 * t725;
-        let t727 = garm_vx_leg4 * t726;
-        let t732 = t642 + 0.2 * t608;
-        let t735 = s_cross_leg4 * t732 + c_cross_leg4 * t725;
-        let t736 = c_rod_leg4 * t735;
-        let t748 = t715 * (t675 - rate_dot_rod_leg4) + t718 * (t683 + t613)
-            - t593 * t671;
-        let t750 = s_rod_leg4 * t735;
-        let t755 = s_cross_leg4 * t725 - c_cross_leg4 * t732;
-        let t766 = t659 * rate_dot_cross_leg4 + t593 * t620;
+        let t668 = t660 * t612
+            - (s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
+                - c_cross_leg4 * t665);
+        let t669 = t598 * rate_cross_leg4;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * (t669 + t669 - t668);
+        let t673 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t675 = t659 + t673 + t659;
+        let t676 = s_rod_leg4 * t675;
+        let t678 = t658 * t658;
+        let t679 = t595 * t678;
+        let t680 = grod_vx_leg4 * t679;
+        let t682 = t590 * grod_vx_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t682;
+        let gcross_vz_leg4 = s_arm_leg4 * t682;
+        let t687 = t595 * t679;
+        let t691 = 1.8867924528301887 * t668;
+        let t692 = c_rod_leg4 * t691;
+        let t694 = c_rod_leg4 * t675 - t595 * t692;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t633;
+        let t701 = t679 + rate_dot_rod_leg4;
+        let t705 = s_rod_leg4 * t701 + c_rod_leg4 * (t617 - t687);
+        let t720 = c_rod_leg4 * t660;
+        let t723 = t660 * s_rod_leg4;
+        let t727 = t720 * (t678 + t617) + t723 * t701 + t597 * t691;
+        let t729 = t665 - t642;
+        let t730 = 0.2 * t729;
+        let t731 = garm_vx_leg4 * t730;
+        let t736 = t646 + 0.2 * t612;
+        let t739 = s_cross_leg4 * t736 + c_cross_leg4 * t729;
+        let t740 = c_rod_leg4 * t739;
+        let t752 = t720 * (t679 - rate_dot_rod_leg4) + t723 * (t687 + t617)
+            - t597 * t675;
+        let t754 = s_rod_leg4 * t739;
+        let t759 = s_cross_leg4 * t729 - c_cross_leg4 * t736;
+        let t770 = t660 * rate_dot_cross_leg4 + t597 * t624;
         Ok([
             [
                 t49, -(garm_vx_leg1 * t54), garm_vx_leg1 * t58, t49, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t88, -(minus_gcross_vx_leg1 * t102),
-                -(minus_gcross_vx_leg1 * t115), -(minus_gcross_vx_leg1 * t99),
-                -(minus_gcross_vx_leg1 * t125), 0.0,
-                -(garm_vx_leg1 * t140 + minus_gcross_vx_leg1 * t148),
-                garm_vx_leg1 * t165 + minus_gcross_vx_leg1 * t167,
-                garm_vx_leg1 * t183 - minus_gcross_vx_leg1 * t175, garm_vx_leg1 * t152, -t244,
-                minus_garm_vx_leg2 * t249, -(minus_garm_vx_leg2 * t253), -t244,
+                minus_gcross_vx_leg1 * t88, -(minus_gcross_vx_leg1 * t106),
+                -(minus_gcross_vx_leg1 * t119), -(minus_gcross_vx_leg1 * t103),
+                -(minus_gcross_vx_leg1 * t129), 0.0,
+                garm_vx_leg1 * t144 - minus_gcross_vx_leg1 * t152,
+                garm_vx_leg1 * t169 + minus_gcross_vx_leg1 * t171,
+                garm_vx_leg1 * t187 - minus_gcross_vx_leg1 * t179, garm_vx_leg1 * t156, -t248,
+                minus_garm_vx_leg2 * t253, -(minus_garm_vx_leg2 * t257), -t248,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t283 + t287,
-                gcross_vx_leg2 * t297 - minus_grod_vx_leg2 * (t299 - t285),
-                gcross_vx_leg2 * t310 + minus_grod_vx_leg2 * t278, -(gcross_vx_leg2 * t294 + t287),
-                -(gcross_vx_leg2 * t320
-                    - 1.8867924528301887 * minus_rate_dot_cross_leg2),
+                gcross_vx_leg2 * t287 + t291,
+                gcross_vx_leg2 * t302 - minus_grod_vx_leg2 * (t304 - t289),
+                gcross_vx_leg2 * t315 - minus_grod_vx_leg2 * t282, -(gcross_vx_leg2 * t299 + t291),
+                -(gcross_vx_leg2 * t325 + 1.8867924528301887 * rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                minus_garm_vx_leg2 * t335 + 1.8867924528301887 * t339,
-                1.8867924528301887 * t356
-                    - (minus_garm_vx_leg2 * t364 + gcross_vx_leg2 * t366),
-                gcross_vx_leg2 * t356 - minus_garm_vx_leg2 * t379,
-                -t339,
-                -t439,
-                minus_garm_vx_leg3 * t444,
-                -(minus_garm_vx_leg3 * t448),
-                -t439,
+                minus_garm_vx_leg2 * t339 + 1.8867924528301887 * t343,
+                1.8867924528301887 * t360
+                    - (minus_garm_vx_leg2 * t368 + gcross_vx_leg2 * t370),
+                gcross_vx_leg2 * t360 - minus_garm_vx_leg2 * t383,
+                -t343,
+                -t443,
+                minus_garm_vx_leg3 * t448,
+                -(minus_garm_vx_leg3 * t452),
+                -t443,
                 minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 -minus_garm_vx_leg3,
-                gcross_vx_leg3 * t478,
-                gcross_vx_leg3 * t492,
-                gcross_vx_leg3 * t505,
-                gcross_vx_leg3 * t489,
-                -(gcross_vx_leg3 * t125),
+                gcross_vx_leg3 * t482,
+                gcross_vx_leg3 * t497,
+                gcross_vx_leg3 * t510,
+                gcross_vx_leg3 * t494,
+                -(gcross_vx_leg3 * t129),
                 0.0,
-                gcross_vx_leg3 * t527 - minus_garm_vx_leg3 * t537,
-                -(minus_garm_vx_leg3 * t554 + gcross_vx_leg3 * t556),
-                gcross_vx_leg3 * t561 - minus_garm_vx_leg3 * t573,
-                -(minus_garm_vx_leg3 * t541),
-                t633,
-                -(garm_vx_leg4 * t638),
-                garm_vx_leg4 * t642,
-                t633,
+                gcross_vx_leg3 * t532 - minus_garm_vx_leg3 * t541,
+                -(minus_garm_vx_leg3 * t558 + gcross_vx_leg3 * t560),
+                gcross_vx_leg3 * t565 - minus_garm_vx_leg3 * t577,
+                -(minus_garm_vx_leg3 * t545),
+                t637,
+                -(garm_vx_leg4 * t642),
+                garm_vx_leg4 * t646,
+                t637,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t672 + t676),
-                grod_vx_leg4 * (t683 - t674) - minus_gcross_vx_leg4 * t689,
-                grod_vx_leg4 * t669 - minus_gcross_vx_leg4 * t700,
-                t676 - minus_gcross_vx_leg4 * t687,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t320,
+                -(minus_gcross_vx_leg4 * t676 + t680),
+                grod_vx_leg4 * (t687 - t678) - minus_gcross_vx_leg4 * t694,
+                grod_vx_leg4 * t673 - minus_gcross_vx_leg4 * t705,
+                t680 + minus_gcross_vx_leg4 * t692,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t325,
                 grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t723 + 1.8867924528301887 * t727),
-                garm_vx_leg4 * t748 + minus_gcross_vx_leg4 * t750
-                    - 1.8867924528301887 * t755,
-                garm_vx_leg4 * t766 - minus_gcross_vx_leg4 * t755,
-                t727,
+                -(garm_vx_leg4 * t727 + 1.8867924528301887 * t731),
+                garm_vx_leg4 * t752 + minus_gcross_vx_leg4 * t754
+                    - 1.8867924528301887 * t759,
+                garm_vx_leg4 * t770 - minus_gcross_vx_leg4 * t759,
+                t731,
                 acceleration[0],
             ],
             [
                 t51, -(garm_vy_leg1 * t54), garm_vy_leg1 * t58, t51, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
                 minus_gcross_vy_leg1 * t88 - t95,
-                grod_vy_leg1 * (t104 - t93) - minus_gcross_vy_leg1 * t102,
-                -(minus_gcross_vy_leg1 * t115 + grod_vy_leg1 * t85),
-                t95 - minus_gcross_vy_leg1 * t99,
-                -(minus_gcross_vy_leg1 * t125
+                grod_vy_leg1 * (t108 - t93) - minus_gcross_vy_leg1 * t106,
+                -(minus_gcross_vy_leg1 * t119 + grod_vy_leg1 * t85),
+                t95 - minus_gcross_vy_leg1 * t103,
+                -(minus_gcross_vy_leg1 * t129
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                -(garm_vy_leg1 * t140 + 1.8867924528301887 * t153),
-                garm_vy_leg1 * t165 + minus_gcross_vy_leg1 * t167
-                    - 1.8867924528301887 * t175,
-                garm_vy_leg1 * t183 - minus_gcross_vy_leg1 * t175,
-                t153,
-                t246,
-                -(garm_vy_leg2 * t249),
-                garm_vy_leg2 * t253,
-                t246,
+                garm_vy_leg1 * t144 - 1.8867924528301887 * t157,
+                garm_vy_leg1 * t169 + minus_gcross_vy_leg1 * t171
+                    - 1.8867924528301887 * t179,
+                garm_vy_leg1 * t187 - minus_gcross_vy_leg1 * t179,
+                t157,
+                t250,
+                -(garm_vy_leg2 * t253),
+                garm_vy_leg2 * t257,
+                t250,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t283),
-                -(minus_gcross_vy_leg2 * t297),
-                -(minus_gcross_vy_leg2 * t310),
-                minus_gcross_vy_leg2 * t294,
-                minus_gcross_vy_leg2 * t320,
+                -(minus_gcross_vy_leg2 * t287),
+                -(minus_gcross_vy_leg2 * t302),
+                -(minus_gcross_vy_leg2 * t315),
+                minus_gcross_vy_leg2 * t299,
+                minus_gcross_vy_leg2 * t325,
                 0.0,
-                -(garm_vy_leg2 * t335 + minus_gcross_vy_leg2 * t348),
-                garm_vy_leg2 * t364 + minus_gcross_vy_leg2 * t366,
-                garm_vy_leg2 * t379 - minus_gcross_vy_leg2 * t356,
-                garm_vy_leg2 * t338,
-                -t441,
-                minus_garm_vy_leg3 * t444,
-                -(minus_garm_vy_leg3 * t448),
-                -t441,
+                -(garm_vy_leg2 * t339 + minus_gcross_vy_leg2 * t352),
+                garm_vy_leg2 * t368 + minus_gcross_vy_leg2 * t370,
+                garm_vy_leg2 * t383 - minus_gcross_vy_leg2 * t360,
+                garm_vy_leg2 * t342,
+                -t445,
+                minus_garm_vy_leg3 * t448,
+                -(minus_garm_vy_leg3 * t452),
+                -t445,
                 minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t478 + t485,
-                gcross_vy_leg3 * t492 - minus_grod_vy_leg3 * (t495 - t483),
-                gcross_vy_leg3 * t505 - minus_grod_vy_leg3 * t473,
-                gcross_vy_leg3 * t489 - t485,
-                -(gcross_vy_leg3 * t125 + 1.8867924528301887 * rate_dot_cross_leg3),
+                gcross_vy_leg3 * t482 + t489,
+                gcross_vy_leg3 * t497 - minus_grod_vy_leg3 * (t500 - t487),
+                gcross_vy_leg3 * t510 - minus_grod_vy_leg3 * t477,
+                gcross_vy_leg3 * t494 - t489,
+                -(gcross_vy_leg3 * t129 + 1.8867924528301887 * rate_dot_cross_leg3),
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                1.8867924528301887 * t542 - minus_garm_vy_leg3 * t537,
-                1.8867924528301887 * t561
-                    - (minus_garm_vy_leg3 * t554 + gcross_vy_leg3 * t556),
-                gcross_vy_leg3 * t561 - minus_garm_vy_leg3 * t573,
-                -t542,
-                -t635,
-                minus_garm_vy_leg4 * t638,
-                -(minus_garm_vy_leg4 * t642),
-                -t635,
+                1.8867924528301887 * t546 - minus_garm_vy_leg3 * t541,
+                1.8867924528301887 * t565
+                    - (minus_garm_vy_leg3 * t558 + gcross_vy_leg3 * t560),
+                gcross_vy_leg3 * t565 - minus_garm_vy_leg3 * t577,
+                -t546,
+                -t639,
+                minus_garm_vy_leg4 * t642,
+                -(minus_garm_vy_leg4 * t646),
+                -t639,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4),
                 -minus_garm_vy_leg4,
-                gcross_vy_leg4 * t672,
-                gcross_vy_leg4 * t689,
-                gcross_vy_leg4 * t700,
-                gcross_vy_leg4 * t687,
-                gcross_vy_leg4 * t320,
+                gcross_vy_leg4 * t676,
+                gcross_vy_leg4 * t694,
+                gcross_vy_leg4 * t705,
+                -(gcross_vy_leg4 * t692),
+                gcross_vy_leg4 * t325,
                 0.0,
-                minus_garm_vy_leg4 * t723 + gcross_vy_leg4 * t736,
-                -(minus_garm_vy_leg4 * t748 + gcross_vy_leg4 * t750),
-                gcross_vy_leg4 * t755 - minus_garm_vy_leg4 * t766,
-                -(minus_garm_vy_leg4 * t726),
+                minus_garm_vy_leg4 * t727 + gcross_vy_leg4 * t740,
+                -(minus_garm_vy_leg4 * t752 + gcross_vy_leg4 * t754),
+                gcross_vy_leg4 * t759 - minus_garm_vy_leg4 * t770,
+                -(minus_garm_vy_leg4 * t730),
                 acceleration[1],
             ],
             [
                 -t53, minus_garm_vz_leg1 * t54, -(minus_garm_vz_leg1 * t58), -t53,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t88), minus_minus_gcross_vz_leg1 * t102,
-                minus_minus_gcross_vz_leg1 * t115, minus_minus_gcross_vz_leg1 * t99,
-                minus_minus_gcross_vz_leg1 * t125, 0.0,
-                minus_garm_vz_leg1 * t140 + minus_minus_gcross_vz_leg1 * t148,
-                -(minus_minus_gcross_vz_leg1 * t167 + minus_garm_vz_leg1 * t165),
-                -(minus_garm_vz_leg1 * t183 - minus_minus_gcross_vz_leg1 * t175),
-                -(minus_garm_vz_leg1 * t152), -t248, minus_garm_vz_leg2 * t249,
-                -(minus_garm_vz_leg2 * t253), -t248, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_gcross_vz_leg1 * t88), minus_minus_gcross_vz_leg1 * t106,
+                minus_minus_gcross_vz_leg1 * t119, minus_minus_gcross_vz_leg1 * t103,
+                minus_minus_gcross_vz_leg1 * t129, 0.0,
+                -(minus_garm_vz_leg1 * t144 - minus_minus_gcross_vz_leg1 * t152),
+                -(minus_minus_gcross_vz_leg1 * t171 + minus_garm_vz_leg1 * t169),
+                -(minus_garm_vz_leg1 * t187 - minus_minus_gcross_vz_leg1 * t179),
+                -(minus_garm_vz_leg1 * t156), -t252, minus_garm_vz_leg2 * t253,
+                -(minus_garm_vz_leg2 * t257), -t252, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t283, gcross_vz_leg2 * t297, gcross_vz_leg2 * t310,
-                -(gcross_vz_leg2 * t294), -(gcross_vz_leg2 * t320), 0.0,
-                gcross_vz_leg2 * t348 + minus_garm_vz_leg2 * t335,
-                -(minus_garm_vz_leg2 * t364 + gcross_vz_leg2 * t366),
-                gcross_vz_leg2 * t356 - minus_garm_vz_leg2 * t379, -(minus_garm_vz_leg2 * t338),
-                -t443, minus_garm_vz_leg3 * t444, -(minus_garm_vz_leg3 * t448), -t443,
+                gcross_vz_leg2 * t287, gcross_vz_leg2 * t302, gcross_vz_leg2 * t315,
+                -(gcross_vz_leg2 * t299), -(gcross_vz_leg2 * t325), 0.0,
+                gcross_vz_leg2 * t352 + minus_garm_vz_leg2 * t339,
+                -(minus_garm_vz_leg2 * t368 + gcross_vz_leg2 * t370),
+                gcross_vz_leg2 * t360 - minus_garm_vz_leg2 * t383, -(minus_garm_vz_leg2 * t342),
+                -t447, minus_garm_vz_leg3 * t448, -(minus_garm_vz_leg3 * t452), -t447,
                 minus_garm_vz_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t478, gcross_vz_leg3 * t492,
-                gcross_vz_leg3 * t505, gcross_vz_leg3 * t489, -(gcross_vz_leg3 * t125), 0.0,
-                gcross_vz_leg3 * t527 - minus_garm_vz_leg3 * t537,
-                -(minus_garm_vz_leg3 * t554 + gcross_vz_leg3 * t556),
-                gcross_vz_leg3 * t561 - minus_garm_vz_leg3 * t573, -(minus_garm_vz_leg3 * t541),
-                -t637, minus_garm_vz_leg4 * t638, -(minus_garm_vz_leg4 * t642), -t637,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t482, gcross_vz_leg3 * t497,
+                gcross_vz_leg3 * t510, gcross_vz_leg3 * t494, -(gcross_vz_leg3 * t129), 0.0,
+                gcross_vz_leg3 * t532 - minus_garm_vz_leg3 * t541,
+                -(minus_garm_vz_leg3 * t558 + gcross_vz_leg3 * t560),
+                gcross_vz_leg3 * t565 - minus_garm_vz_leg3 * t577, -(minus_garm_vz_leg3 * t545),
+                -t641, minus_garm_vz_leg4 * t642, -(minus_garm_vz_leg4 * t646), -t641,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t672, gcross_vz_leg4 * t689, gcross_vz_leg4 * t700,
-                gcross_vz_leg4 * t687, gcross_vz_leg4 * t320, 0.0,
-                minus_garm_vz_leg4 * t723 + gcross_vz_leg4 * t736,
-                -(minus_garm_vz_leg4 * t748 + gcross_vz_leg4 * t750),
-                gcross_vz_leg4 * t755 - minus_garm_vz_leg4 * t766, -(minus_garm_vz_leg4 * t726),
+                gcross_vz_leg4 * t676, gcross_vz_leg4 * t694, gcross_vz_leg4 * t705,
+                -(gcross_vz_leg4 * t692), gcross_vz_leg4 * t325, 0.0,
+                minus_garm_vz_leg4 * t727 + gcross_vz_leg4 * t740,
+                -(minus_garm_vz_leg4 * t752 + gcross_vz_leg4 * t754),
+                gcross_vz_leg4 * t759 - minus_garm_vz_leg4 * t770, -(minus_garm_vz_leg4 * t730),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -5626,7 +5628,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 673 operations (185 additions, 480 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 550 intermediates.
+    /// 681 operations (187 additions, 486 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 558 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5770,9 +5772,9 @@ impl Delta4 {
         let t277 = 0.2 * rate_dot_arm_leg1;
         let t282 = 0.2 * s_cross_leg1;
         let t284 = t25 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t277 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t282 * t28 + t284 + t284);
+        let t288 = c_cross_leg1 * t277 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t282 * t28 + t284 + t284;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t288;
         let t290 = s_rod_leg1 * minus_rate_dot_cross_leg1;
         let t292 = t276 + t290 + t276;
         let t293 = s_rod_leg1 * t292;
@@ -5803,9 +5805,9 @@ impl Delta4 {
         let t340 = 0.2 * s_cross_leg3;
         let t342 = t130 * rate_cross_leg3;
         let t346 = 0.2 * rate_dot_arm_leg3;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-                - (t340 * t133 + t342 + t342) - c_cross_leg3 * t346);
+        let t348 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - (t340 * t133 + t342 + t342) - c_cross_leg3 * t346;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t348;
         let t350 = s_rod_leg3 * rate_dot_cross_leg3;
         let t352 = minus_rate_rod_leg3 * (1.8867924528301887 * t143);
         let t354 = t350 - t352 - t352;
@@ -5832,66 +5834,66 @@ impl Delta4 {
         let t392 = t165 * grod_vx_leg4;
         let gcross_vy_leg4 = c_arm_leg4 * t392;
         let gcross_vz_leg4 = s_arm_leg4 * t392;
-        let t397 = t293 - minus_rate_dot_cross_leg1;
-        let t400 = t24 * t397 - c_rod_leg1 * t292;
-        let t402 = t298 * t298;
-        let t410 = minus_rate_dot_cross_leg2 + t324;
-        let t413 = c_rod_leg2 * t323 - t62 * t410;
-        let t415 = 0.53 * t326;
-        let t416 = t415 * t415;
-        let t424 = rate_dot_cross_leg3 - t355;
-        let t427 = t129 * t424 + c_rod_leg3 * t354;
-        let t430 = t360 * t360;
-        let t437 = 0.53 * t388;
-        let t438 = t437 * t437;
-        let t444 = rate_dot_cross_leg4 - t386;
-        let t446 = c_rod_leg4 * t385 + t170 * t444;
-        let t451 = t30 * t300;
+        let t401 = s_rod_leg1 * t276 + c_rod_leg1 * (1.8867924528301887 * (t284 - t288));
+        let t404 = t24 * t401 - c_rod_leg1 * t292;
+        let t406 = t298 * t298;
+        let t414 = minus_rate_dot_cross_leg2 + t324;
+        let t417 = c_rod_leg2 * t323 - t62 * t414;
+        let t419 = 0.53 * t326;
+        let t420 = t419 * t419;
+        let t432 = s_rod_leg3 * t352 + c_rod_leg3 * (1.8867924528301887 * (t348 + t342));
+        let t435 = t129 * t432 + c_rod_leg3 * t354;
+        let t438 = t360 * t360;
+        let t445 = 0.53 * t388;
+        let t446 = t445 * t445;
+        let t452 = rate_dot_cross_leg4 - t386;
+        let t454 = c_rod_leg4 * t385 + t170 * t452;
+        let t459 = t30 * t300;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t46;
-        let t455 = 3.5599857600569598 * t402;
-        let t458 = s_rod_leg1 * (t451 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t455);
+        let t463 = 3.5599857600569598 * t406;
+        let t466 = s_rod_leg1 * (t459 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t463);
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t100;
-        let t467 = 3.5599857600569598 * t416;
-        let t470 = s_rod_leg2 * (t327 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t87 - t467);
-        let t476 = t135 * t362;
+        let t475 = 3.5599857600569598 * t420;
+        let t478 = s_rod_leg2 * (t327 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t87 - t475);
+        let t484 = t135 * t362;
         let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t154;
-        let t480 = 3.5599857600569598 * t430;
-        let t483 = s_rod_leg3 * (t476 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t138 - t480);
+        let t488 = 3.5599857600569598 * t438;
+        let t491 = s_rod_leg3 * (t484 - minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t138 - t488);
         let rate_dot_rod_leg4 = grod_vx_leg4 * t208;
-        let t493 = 3.5599857600569598 * t438;
-        let t496 = s_rod_leg4 * (t389 + rate_dot_rod_leg4) + c_rod_leg4 * (t192 - t493);
-        let t517 = 1.8867924528301887 * acceleration[1];
-        let t523 = 1.8867924528301887 * acceleration[0];
-        let t549 = t282 * (c_rod_leg1 * (t451 - rate_dot_rod_leg1))
-            + t282 * s_rod_leg1 * (t455 + t40) + t17 * t292;
-        let t552 = t233 + 0.2 * t28;
-        let t554 = t277 - t217;
-        let t557 = s_rod_leg1 * (s_cross_leg1 * t552 + c_cross_leg1 * t554);
-        let t565 = s_cross_leg1 * t554 - c_cross_leg1 * t552;
-        let t571 = t315 - t221;
-        let t574 = t237 + 0.2 * t82;
-        let t576 = s_cross_leg2 * t571 - c_cross_leg2 * t574;
-        let t586 = t309 * (c_rod_leg2 * (t327 + minus_rate_dot_rod_leg2))
-            + t309 * s_rod_leg2 * (t467 + t87) - t75 * t323;
-        let t591 = s_rod_leg2 * (s_cross_leg2 * t574 + c_cross_leg2 * t571);
-        let t609 = t340 * (c_rod_leg3 * (t476 + minus_rate_dot_rod_leg3))
-            + t340 * s_rod_leg3 * (t480 + t138) - t122 * t354;
-        let t612 = t241 + 0.2 * t133;
-        let t614 = t346 - t225;
-        let t617 = s_rod_leg3 * (s_cross_leg3 * t612 + c_cross_leg3 * t614);
-        let t622 = s_cross_leg3 * t614 - c_cross_leg3 * t612;
-        let t639 = t373 * (c_rod_leg4 * (t389 - rate_dot_rod_leg4))
-            + t373 * s_rod_leg4 * (t493 + t192) - t172 * t385;
-        let t642 = t245 + 0.2 * t187;
-        let t644 = t379 - t229;
-        let t647 = s_rod_leg4 * (s_cross_leg4 * t642 + c_cross_leg4 * t644);
-        let t652 = s_cross_leg4 * t644 - c_cross_leg4 * t642;
-        let t663 = t17 * t38 - t282 * minus_rate_dot_cross_leg1;
-        let t676 = t75 * t94 - t309 * minus_rate_dot_cross_leg2;
-        let t688 = t340 * rate_dot_cross_leg3 + t122 * t145;
-        let t699 = t373 * rate_dot_cross_leg4 + t172 * t199;
+        let t501 = 3.5599857600569598 * t446;
+        let t504 = s_rod_leg4 * (t389 + rate_dot_rod_leg4) + c_rod_leg4 * (t192 - t501);
+        let t525 = 1.8867924528301887 * acceleration[1];
+        let t531 = 1.8867924528301887 * acceleration[0];
+        let t557 = t282 * (c_rod_leg1 * (t459 - rate_dot_rod_leg1))
+            + t282 * s_rod_leg1 * (t463 + t40) + t17 * t292;
+        let t560 = t233 + 0.2 * t28;
+        let t562 = t277 - t217;
+        let t565 = s_rod_leg1 * (s_cross_leg1 * t560 + c_cross_leg1 * t562);
+        let t573 = s_cross_leg1 * t562 - c_cross_leg1 * t560;
+        let t579 = t315 - t221;
+        let t582 = t237 + 0.2 * t82;
+        let t584 = s_cross_leg2 * t579 - c_cross_leg2 * t582;
+        let t594 = t309 * (c_rod_leg2 * (t327 + minus_rate_dot_rod_leg2))
+            + t309 * s_rod_leg2 * (t475 + t87) - t75 * t323;
+        let t599 = s_rod_leg2 * (s_cross_leg2 * t582 + c_cross_leg2 * t579);
+        let t617 = t340 * (c_rod_leg3 * (t484 + minus_rate_dot_rod_leg3))
+            + t340 * s_rod_leg3 * (t488 + t138) - t122 * t354;
+        let t620 = t241 + 0.2 * t133;
+        let t622 = t346 - t225;
+        let t625 = s_rod_leg3 * (s_cross_leg3 * t620 + c_cross_leg3 * t622);
+        let t630 = s_cross_leg3 * t622 - c_cross_leg3 * t620;
+        let t647 = t373 * (c_rod_leg4 * (t389 - rate_dot_rod_leg4))
+            + t373 * s_rod_leg4 * (t501 + t192) - t172 * t385;
+        let t650 = t245 + 0.2 * t187;
+        let t652 = t379 - t229;
+        let t655 = s_rod_leg4 * (s_cross_leg4 * t650 + c_cross_leg4 * t652);
+        let t660 = s_cross_leg4 * t652 - c_cross_leg4 * t650;
+        let t671 = t17 * t38 - t282 * minus_rate_dot_cross_leg1;
+        let t684 = t75 * t94 - t309 * minus_rate_dot_cross_leg2;
+        let t696 = t340 * rate_dot_cross_leg3 + t122 * t145;
+        let t707 = t373 * rate_dot_cross_leg4 + t172 * t199;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
@@ -5907,36 +5909,36 @@ impl Delta4 {
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
                 -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t293,
                 gcross_vx_leg2 * t324 + t328, gcross_vx_leg3 * t355,
-                -(minus_gcross_vx_leg4 * t386 + t390), -(minus_gcross_vx_leg1 * t400),
-                gcross_vx_leg2 * t413 - 6.716954264258415 * (t61 * (t416 - t92 * t92)),
-                gcross_vx_leg3 * t427,
-                6.716954264258415 * (t169 * (t438 - t197 * t197))
-                    - minus_gcross_vx_leg4 * t446,
-                -(minus_gcross_vx_leg1 * t458),
-                gcross_vx_leg2 * t470 + minus_grod_vx_leg2 * t319,
-                gcross_vx_leg3 * t483,
-                grod_vx_leg4 * t383 - minus_gcross_vx_leg4 * t496,
-                -(minus_gcross_vx_leg1 * t397),
-                -(gcross_vx_leg2 * t410 + t328),
-                gcross_vx_leg3 * t424,
-                t390 - minus_gcross_vx_leg4 * t444,
-                -(minus_gcross_vx_leg1 * t517),
-                -(gcross_vx_leg2 * t523
+                -(minus_gcross_vx_leg4 * t386 + t390), -(minus_gcross_vx_leg1 * t404),
+                gcross_vx_leg2 * t417 - 6.716954264258415 * (t61 * (t420 - t92 * t92)),
+                gcross_vx_leg3 * t435,
+                6.716954264258415 * (t169 * (t446 - t197 * t197))
+                    - minus_gcross_vx_leg4 * t454,
+                -(minus_gcross_vx_leg1 * t466),
+                gcross_vx_leg2 * t478 + minus_grod_vx_leg2 * t319,
+                gcross_vx_leg3 * t491,
+                grod_vx_leg4 * t383 - minus_gcross_vx_leg4 * t504,
+                -(minus_gcross_vx_leg1 * t401),
+                -(gcross_vx_leg2 * t414 + t328),
+                gcross_vx_leg3 * t432,
+                t390 - minus_gcross_vx_leg4 * t452,
+                -(minus_gcross_vx_leg1 * t525),
+                -(gcross_vx_leg2 * t531
                     - 1.8867924528301887 * minus_rate_dot_cross_leg2),
-                -(gcross_vx_leg3 * t517),
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t523,
+                -(gcross_vx_leg3 * t525),
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t531,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t549 + minus_gcross_vx_leg1 * t557,
-                1.8867924528301887 * t576
-                    - (minus_garm_vx_leg2 * t586 + gcross_vx_leg2 * t591),
-                -(minus_garm_vx_leg3 * t609 + gcross_vx_leg3 * t617),
-                garm_vx_leg4 * t639 + minus_gcross_vx_leg4 * t647
-                    - 1.8867924528301887 * t652,
-                garm_vx_leg1 * t663 - minus_gcross_vx_leg1 * t565,
-                gcross_vx_leg2 * t576 - minus_garm_vx_leg2 * t676,
-                gcross_vx_leg3 * t622 - minus_garm_vx_leg3 * t688,
-                garm_vx_leg4 * t699 - minus_gcross_vx_leg4 * t652,
+                garm_vx_leg1 * t557 + minus_gcross_vx_leg1 * t565,
+                1.8867924528301887 * t584
+                    - (minus_garm_vx_leg2 * t594 + gcross_vx_leg2 * t599),
+                -(minus_garm_vx_leg3 * t617 + gcross_vx_leg3 * t625),
+                garm_vx_leg4 * t647 + minus_gcross_vx_leg4 * t655
+                    - 1.8867924528301887 * t660,
+                garm_vx_leg1 * t671 - minus_gcross_vx_leg1 * t573,
+                gcross_vx_leg2 * t584 - minus_garm_vx_leg2 * t684,
+                gcross_vx_leg3 * t630 - minus_garm_vx_leg3 * t696,
+                garm_vx_leg4 * t707 - minus_gcross_vx_leg4 * t660,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
@@ -5954,37 +5956,37 @@ impl Delta4 {
                 garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
                 minus_gcross_vy_leg1 * t293 - t300, -(minus_gcross_vy_leg2 * t324),
                 gcross_vy_leg3 * t355 + t362, gcross_vy_leg4 * t386,
-                6.716954264258415 * (t23 * (t402 - t36 * t36))
-                    - minus_gcross_vy_leg1 * t400,
-                -(minus_gcross_vy_leg2 * t413),
-                gcross_vy_leg3 * t427
-                    - 6.716954264258415 * (t128 * (t430 - t143 * t143)),
-                gcross_vy_leg4 * t446,
-                -(minus_gcross_vy_leg1 * t458 + grod_vy_leg1 * t290),
-                -(minus_gcross_vy_leg2 * t470),
-                gcross_vy_leg3 * t483 - minus_grod_vy_leg3 * t350,
-                gcross_vy_leg4 * t496,
-                t300 - minus_gcross_vy_leg1 * t397,
-                minus_gcross_vy_leg2 * t410,
-                gcross_vy_leg3 * t424 - t362,
-                gcross_vy_leg4 * t444,
-                -(minus_gcross_vy_leg1 * t517
+                6.716954264258415 * (t23 * (t406 - t36 * t36))
+                    - minus_gcross_vy_leg1 * t404,
+                -(minus_gcross_vy_leg2 * t417),
+                gcross_vy_leg3 * t435
+                    - 6.716954264258415 * (t128 * (t438 - t143 * t143)),
+                gcross_vy_leg4 * t454,
+                -(minus_gcross_vy_leg1 * t466 + grod_vy_leg1 * t290),
+                -(minus_gcross_vy_leg2 * t478),
+                gcross_vy_leg3 * t491 - minus_grod_vy_leg3 * t350,
+                gcross_vy_leg4 * t504,
+                t300 - minus_gcross_vy_leg1 * t401,
+                minus_gcross_vy_leg2 * t414,
+                gcross_vy_leg3 * t432 - t362,
+                gcross_vy_leg4 * t452,
+                -(minus_gcross_vy_leg1 * t525
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t523,
-                -(gcross_vy_leg3 * t517 + 1.8867924528301887 * rate_dot_cross_leg3),
-                gcross_vy_leg4 * t523,
+                minus_gcross_vy_leg2 * t531,
+                -(gcross_vy_leg3 * t525 + 1.8867924528301887 * rate_dot_cross_leg3),
+                gcross_vy_leg4 * t531,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                garm_vy_leg1 * t549 + minus_gcross_vy_leg1 * t557
-                    - 1.8867924528301887 * t565,
-                garm_vy_leg2 * t586 + minus_gcross_vy_leg2 * t591,
-                1.8867924528301887 * t622
-                    - (minus_garm_vy_leg3 * t609 + gcross_vy_leg3 * t617),
-                -(minus_garm_vy_leg4 * t639 + gcross_vy_leg4 * t647),
-                garm_vy_leg1 * t663 - minus_gcross_vy_leg1 * t565,
-                garm_vy_leg2 * t676 - minus_gcross_vy_leg2 * t576,
-                gcross_vy_leg3 * t622 - minus_garm_vy_leg3 * t688,
-                gcross_vy_leg4 * t652 - minus_garm_vy_leg4 * t699,
+                garm_vy_leg1 * t557 + minus_gcross_vy_leg1 * t565
+                    - 1.8867924528301887 * t573,
+                garm_vy_leg2 * t594 + minus_gcross_vy_leg2 * t599,
+                1.8867924528301887 * t630
+                    - (minus_garm_vy_leg3 * t617 + gcross_vy_leg3 * t625),
+                -(minus_garm_vy_leg4 * t647 + gcross_vy_leg4 * t655),
+                garm_vy_leg1 * t671 - minus_gcross_vy_leg1 * t573,
+                garm_vy_leg2 * t684 - minus_gcross_vy_leg2 * t584,
+                gcross_vy_leg3 * t630 - minus_garm_vy_leg3 * t696,
+                gcross_vy_leg4 * t660 - minus_garm_vy_leg4 * t707,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
@@ -6002,20 +6004,20 @@ impl Delta4 {
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
                 -(minus_minus_gcross_vz_leg1 * t293), gcross_vz_leg2 * t324, gcross_vz_leg3 * t355,
-                gcross_vz_leg4 * t386, minus_minus_gcross_vz_leg1 * t400, gcross_vz_leg2 * t413,
-                gcross_vz_leg3 * t427, gcross_vz_leg4 * t446, minus_minus_gcross_vz_leg1 * t458,
-                gcross_vz_leg2 * t470, gcross_vz_leg3 * t483, gcross_vz_leg4 * t496,
-                minus_minus_gcross_vz_leg1 * t397, -(gcross_vz_leg2 * t410), gcross_vz_leg3 * t424,
-                gcross_vz_leg4 * t444, minus_minus_gcross_vz_leg1 * t517, -(gcross_vz_leg2 * t523),
-                -(gcross_vz_leg3 * t517), gcross_vz_leg4 * t523, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t557 + minus_garm_vz_leg1 * t549),
-                -(minus_garm_vz_leg2 * t586 + gcross_vz_leg2 * t591),
-                -(minus_garm_vz_leg3 * t609 + gcross_vz_leg3 * t617),
-                -(minus_garm_vz_leg4 * t639 + gcross_vz_leg4 * t647),
-                -(minus_garm_vz_leg1 * t663 - minus_minus_gcross_vz_leg1 * t565),
-                gcross_vz_leg2 * t576 - minus_garm_vz_leg2 * t676,
-                gcross_vz_leg3 * t622 - minus_garm_vz_leg3 * t688,
-                gcross_vz_leg4 * t652 - minus_garm_vz_leg4 * t699,
+                gcross_vz_leg4 * t386, minus_minus_gcross_vz_leg1 * t404, gcross_vz_leg2 * t417,
+                gcross_vz_leg3 * t435, gcross_vz_leg4 * t454, minus_minus_gcross_vz_leg1 * t466,
+                gcross_vz_leg2 * t478, gcross_vz_leg3 * t491, gcross_vz_leg4 * t504,
+                minus_minus_gcross_vz_leg1 * t401, -(gcross_vz_leg2 * t414), gcross_vz_leg3 * t432,
+                gcross_vz_leg4 * t452, minus_minus_gcross_vz_leg1 * t525, -(gcross_vz_leg2 * t531),
+                -(gcross_vz_leg3 * t525), gcross_vz_leg4 * t531, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t565 + minus_garm_vz_leg1 * t557),
+                -(minus_garm_vz_leg2 * t594 + gcross_vz_leg2 * t599),
+                -(minus_garm_vz_leg3 * t617 + gcross_vz_leg3 * t625),
+                -(minus_garm_vz_leg4 * t647 + gcross_vz_leg4 * t655),
+                -(minus_garm_vz_leg1 * t671 - minus_minus_gcross_vz_leg1 * t573),
+                gcross_vz_leg2 * t584 - minus_garm_vz_leg2 * t684,
+                gcross_vz_leg3 * t630 - minus_garm_vz_leg3 * t696,
+                gcross_vz_leg4 * t660 - minus_garm_vz_leg4 * t707,
             ],
         ])
     }
@@ -9161,7 +9163,7 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 916 operations (366 additions, 539 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 940 intermediates.
+    /// 909 operations (363 additions, 535 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 933 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9218,382 +9220,381 @@ impl Delta4 {
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
         let t63 = 0.2 * s_cross_leg1;
-        let t65 = t23 * t35;
-        let t67 = 3.5599857600569598 * (t65 * t65);
-        let t68 = t37 - t67;
-        let t69 = t23 * t68;
+        let t65 = 1.8867924528301887 * t35;
+        let t66 = t65 * t65;
+        let t67 = t23 * t66;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t71 = t69 - rate_dot_rod_leg1;
-        let t76 = 0.2 * rate_dot_arm_leg1;
-        let t82 = t24 * minus_rate_cross_leg1;
-        let t87 = 1.8867924528301887
-            * (c_cross_leg1 * t76 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t63 * t27 + t82 + t82);
-        let t90 = t76 - t50;
-        let t93 = t53 + 0.2 * t27;
-        let t95 = s_cross_leg1 * t90 - c_cross_leg1 * t93;
-        let t96 = c_rod_leg1 * t95;
-        let t99 = c_rod_leg1 * t63
-            * (parameters[14] * t71 - parameters[13] * (t68 + t39) - parameters[15] * t87
-                + parameters[16] * t96);
-        let t101 = t69 + rate_dot_rod_leg1;
-        let t106 = t23 * t87;
-        let t109 = s_rod_leg1 * t95;
-        let t112 = t63 * s_rod_leg1
-            * (parameters[13] * t101 - parameters[14] * (t67 + t39)
-                + parameters[15] * t106 - parameters[16] * t109);
-        let t114 = 1.8867924528301887 * t82;
-        let t115 = t114 - t87;
-        let t116 = t114 + t115;
-        let t119 = rate_rod_leg1 * (1.8867924528301887 * t35);
-        let t120 = t106 + t119;
-        let t121 = t119 + t120;
-        let t128 = s_cross_leg1 * t93 + c_cross_leg1 * t90;
-        let t132 = t99 - t112
+        let t69 = t67 - rate_dot_rod_leg1;
+        let t74 = 0.2 * rate_dot_arm_leg1;
+        let t80 = t24 * minus_rate_cross_leg1;
+        let t85 = 1.8867924528301887
+            * (c_cross_leg1 * t74 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t63 * t27 + t80 + t80);
+        let t88 = t74 - t50;
+        let t91 = t53 + 0.2 * t27;
+        let t93 = s_cross_leg1 * t88 - c_cross_leg1 * t91;
+        let t94 = c_rod_leg1 * t93;
+        let t97 = c_rod_leg1 * t63
+            * (parameters[14] * t69 - parameters[13] * (t66 + t39) - parameters[15] * t85
+                + parameters[16] * t94);
+        let t99 = t67 + rate_dot_rod_leg1;
+        let t101 = t23 * t67;
+        let t105 = t23 * t85;
+        let t108 = s_rod_leg1 * t93;
+        let t111 = t63 * s_rod_leg1
+            * (parameters[13] * t99 - parameters[14] * (t101 + t39)
+                + parameters[15] * t105 - parameters[16] * t108);
+        let t113 = 1.8867924528301887 * t80;
+        let t114 = t113 - t85;
+        let t115 = t113 + t114;
+        let t117 = rate_rod_leg1 * t65;
+        let t118 = t105 + t117;
+        let t119 = t117 + t118;
+        let t126 = s_cross_leg1 * t91 + c_cross_leg1 * t88;
+        let t130 = t97 - t111
             + t16
-                * (parameters[13] * t116 + parameters[14] * t121 + parameters[15] * t37
-                    + parameters[16] * t128);
-        let t133 = t62 + t132;
+                * (parameters[13] * t115 + parameters[14] * t119 + parameters[15] * t37
+                    + parameters[16] * t126);
+        let t131 = t62 + t130;
         let minus_gcross_vx_leg1 = grod_vy_leg1 * (t10 * c_arm_leg1);
-        let t146 = parameters[8] * t116 - parameters[7] * t120 + parameters[9] * t101
-            + parameters[10] * t119 + parameters[11] * (t68 - t39);
-        let t163 = parameters[9] * (t39 - t67)
-            - (parameters[7] * t114 + parameters[8] * t121) + parameters[10] * t115
-            - parameters[11] * t71;
-        let t171 = s_rod_leg1
-            * (t146 - parameters[12] * t119 - parameters[14] * t128
-                + parameters[15] * t109)
+        let t144 = parameters[8] * t115 - parameters[7] * t118 + parameters[9] * t99
+            + parameters[10] * t117 + parameters[11] * (t66 - t39);
+        let t161 = parameters[9] * (t39 - t101)
+            - (parameters[7] * t113 + parameters[8] * t119) + parameters[10] * t114
+            - parameters[11] * t69;
+        let t169 = s_rod_leg1
+            * (t144 - parameters[12] * t117 - parameters[14] * t126
+                + parameters[15] * t108)
             + c_rod_leg1
-                * (t163 + parameters[12] * t114 + parameters[13] * t128
-                    + parameters[15] * t96);
-        let t176 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t176;
-        let t180 = 0.2 * c_cross_leg2;
-        let t181 = 1.0 / s_cross_leg2;
-        let t182 = 5.0 * t181;
-        let t183 = s_rod_leg2 * t176;
-        let minus_garm_vx_leg2 = t182 * t183;
-        let t185 = t180 * minus_garm_vx_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * t185;
-        let t187 = 0.53 * s_rod_leg2;
+                * (t161 + parameters[12] * t113 + parameters[13] * t126
+                    + parameters[15] * t94);
+        let t174 = 1.0 / c_rod_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t174;
+        let t178 = 0.2 * c_cross_leg2;
+        let t179 = 1.0 / s_cross_leg2;
+        let t180 = 5.0 * t179;
+        let t181 = s_rod_leg2 * t174;
+        let minus_garm_vx_leg2 = t180 * t181;
+        let t183 = t178 * minus_garm_vx_leg2;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * t183;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t189 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t191 = acceleration[0] - t187 * t189;
-        let t193 = c_cross_leg2 * t181;
+        let t186 = t181 * twist[0];
+        let t188 = acceleration[0] - minus_rate_rod_leg2 * t186;
+        let t190 = c_cross_leg2 * t179;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t207 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2];
-        let t208 = t183 * twist[0];
-        let rate_arm_leg2 = t182 * (t207 - t208);
-        let t211 = rate_arm_leg2 * rate_arm_leg2;
-        let t220 = t185 * twist[0]
-            - (t193 * t207 + s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]);
-        let rate_cross_leg2 = minus_grod_vx_leg2 * t220;
-        let t222 = rate_cross_leg2 * rate_cross_leg2;
-        let t226 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + t180 * t211 + 0.53 * c_rod_leg2 * (t189 + t222);
-        let t231 = 0.2 * s_cross_leg2;
-        let t233 = rate_cross_leg2 * t208;
-        let t238 = t185 * t191
-            - (t193 * t226 + s_armcross_leg2 * acceleration[1]
-                + c_armcross_leg2 * acceleration[2] + t231 * t211 + t233 + t233);
-        let t239 = 1.8867924528301887 * t238;
-        let t240 = t183 * t239;
-        let t242 = minus_rate_rod_leg2 * (1.8867924528301887 * t220);
-        let t243 = t240 - t242;
-        let t245 = 1.8867924528301887 * t233;
-        let t246 = t245 + t239;
-        let t247 = t245 + t246;
-        let t250 = t187 * rate_cross_leg2;
-        let t252 = 3.5599857600569598 * (t250 * t250);
-        let t253 = t222 - t252;
-        let t254 = t183 * t253;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t191;
-        let t256 = t254 - minus_rate_dot_rod_leg2;
-        let t263 = parameters[24] * t243 + parameters[25] * t247 + parameters[26] * t256
-            + parameters[27] * t242 + parameters[28] * (t253 - t189);
-        let t266 = 9.81 * s_arm_leg2;
-        let t268 = t266 + 0.2 * t211;
-        let rate_dot_arm_leg2 = t182 * (t226 - t183 * t191);
-        let t274 = 9.81 * c_arm_leg2;
-        let t275 = 0.2 * rate_dot_arm_leg2 - t274;
-        let t277 = s_cross_leg2 * t268 + c_cross_leg2 * t275;
-        let t282 = s_cross_leg2 * t275 - c_cross_leg2 * t268;
-        let t283 = s_rod_leg2 * t282;
-        let t287 = t243 - t242;
-        let t296 = t254 + minus_rate_dot_rod_leg2;
-        let t298 = parameters[25] * t287 - parameters[24] * t245
-            + parameters[26] * (t189 - t252) + parameters[27] * t246
-            - parameters[28] * t296;
-        let t303 = c_rod_leg2 * t282;
-        let t307 = s_rod_leg2
-            * (t263 - parameters[29] * t242 - parameters[31] * t277
-                + parameters[32] * t283)
+        let t204 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2];
+        let rate_arm_leg2 = t180 * (t204 - t186);
+        let t207 = rate_arm_leg2 * rate_arm_leg2;
+        let t210 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t217 = t183 * twist[0]
+            - (t190 * t204 + s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]);
+        let rate_cross_leg2 = minus_grod_vx_leg2 * t217;
+        let t219 = rate_cross_leg2 * rate_cross_leg2;
+        let t223 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + t178 * t207 + 0.53 * c_rod_leg2 * (t210 + t219);
+        let t228 = 0.2 * s_cross_leg2;
+        let t230 = rate_cross_leg2 * t186;
+        let t235 = t183 * t188
+            - (t190 * t223 + s_armcross_leg2 * acceleration[1]
+                + c_armcross_leg2 * acceleration[2] + t228 * t207 + t230 + t230);
+        let t236 = 1.8867924528301887 * t235;
+        let t237 = t181 * t236;
+        let t238 = 1.8867924528301887 * t217;
+        let t239 = minus_rate_rod_leg2 * t238;
+        let t240 = t237 - t239;
+        let t242 = 1.8867924528301887 * t230;
+        let t243 = t242 + t236;
+        let t244 = t242 + t243;
+        let t247 = t238 * t238;
+        let t248 = t181 * t247;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t188;
+        let t250 = t248 - minus_rate_dot_rod_leg2;
+        let t257 = parameters[24] * t240 + parameters[25] * t244 + parameters[26] * t250
+            + parameters[27] * t239 + parameters[28] * (t247 - t210);
+        let t260 = 9.81 * s_arm_leg2;
+        let t262 = t260 + 0.2 * t207;
+        let rate_dot_arm_leg2 = t180 * (t223 - t181 * t188);
+        let t268 = 9.81 * c_arm_leg2;
+        let t269 = 0.2 * rate_dot_arm_leg2 - t268;
+        let t271 = s_cross_leg2 * t262 + c_cross_leg2 * t269;
+        let t276 = s_cross_leg2 * t269 - c_cross_leg2 * t262;
+        let t277 = s_rod_leg2 * t276;
+        let t281 = t240 - t239;
+        let t285 = t181 * t248;
+        let t291 = t248 + minus_rate_dot_rod_leg2;
+        let t293 = parameters[25] * t281 - parameters[24] * t242
+            + parameters[26] * (t210 - t285) + parameters[27] * t243
+            - parameters[28] * t291;
+        let t298 = c_rod_leg2 * t276;
+        let t302 = s_rod_leg2
+            * (t257 - parameters[29] * t239 - parameters[31] * t271
+                + parameters[32] * t277)
             + c_rod_leg2
-                * (t298 + parameters[29] * t245 + parameters[30] * t277
-                    + parameters[32] * t303);
-        let t320 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t274
-            + parameters[19] * t266 + parameters[20] * rate_dot_arm_leg2
+                * (t293 + parameters[29] * t242 + parameters[30] * t271
+                    + parameters[32] * t298);
+        let t315 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t268
+            + parameters[19] * t260 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t330 = c_rod_leg2 * t231
-            * (parameters[31] * t296 - parameters[30] * (t253 + t189)
-                + parameters[32] * t239 + parameters[33] * t303);
-        let t340 = t231 * s_rod_leg2
-            * (parameters[30] * t256 - parameters[31] * (t252 + t189)
-                - parameters[32] * t240 - parameters[33] * t283);
-        let t350 = t330 - t340
-            - t180
-                * (parameters[31] * t287 - parameters[30] * t247 - parameters[32] * t222
-                    - parameters[33] * t277);
-        let t351 = t320 + t350;
-        let t363 = parameters[25] * (t252 - t253) - parameters[24] * t254
-            + parameters[26] * t240 + parameters[27] * t254 + parameters[28] * t239;
-        let t371 = gcross_vx_leg2 * t307 - minus_garm_vx_leg2 * t351
+        let t325 = c_rod_leg2 * t228
+            * (parameters[31] * t291 - parameters[30] * (t247 + t210)
+                + parameters[32] * t236 + parameters[33] * t298);
+        let t335 = t228 * s_rod_leg2
+            * (parameters[30] * t250 - parameters[31] * (t285 + t210)
+                - parameters[32] * t237 - parameters[33] * t277);
+        let t345 = t325 - t335
+            - t178
+                * (parameters[31] * t281 - parameters[30] * t244 - parameters[32] * t219
+                    - parameters[33] * t271);
+        let t346 = t315 + t345;
+        let t358 = parameters[25] * (t285 - t247) - parameters[24] * t248
+            + parameters[26] * t237 + parameters[27] * t248 + parameters[28] * t236;
+        let t366 = gcross_vx_leg2 * t302 - minus_garm_vx_leg2 * t346
             - minus_grod_vx_leg2
-                * (t363 - parameters[29] * minus_rate_dot_rod_leg2
-                    - parameters[30] * t283 - parameters[31] * t303);
-        let t375 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t375;
-        let t379 = 1.0 / s_cross_leg3;
-        let gcross_vx_leg3 = minus_grod_vy_leg3 * (t379 * c_arm_leg3);
-        let t384 = s_rod_leg3 * t375;
+                * (t358 - parameters[29] * minus_rate_dot_rod_leg2
+                    - parameters[30] * t277 - parameters[31] * t298);
+        let t370 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.8867924528301887 * t370;
+        let t374 = 1.0 / s_cross_leg3;
+        let gcross_vx_leg3 = minus_grod_vy_leg3 * (t374 * c_arm_leg3);
+        let t379 = s_rod_leg3 * t370;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t394 = 0.2 * s_cross_leg3;
-        let t395 = 5.0 * t379;
-        let t398 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2];
-        let t399 = t384 * twist[1];
-        let minus_rate_arm_leg3 = t395 * (t398 + t399);
-        let t402 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t404 = c_cross_leg3 * t379;
-        let t410 = 0.2 * c_cross_leg3;
-        let minus_garm_vy_leg3 = t395 * t384;
-        let t412 = t410 * minus_garm_vy_leg3;
-        let t414 = t404 * t398 + s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
-            + t412 * twist[1];
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t414;
-        let t416 = t399 * rate_cross_leg3;
+        let t389 = 0.2 * s_cross_leg3;
+        let t390 = 5.0 * t374;
+        let t393 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2];
+        let t394 = t379 * twist[1];
+        let minus_rate_arm_leg3 = t390 * (t393 + t394);
+        let t397 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
+        let t399 = c_cross_leg3 * t374;
+        let t405 = 0.2 * c_cross_leg3;
+        let minus_garm_vy_leg3 = t390 * t379;
+        let t407 = t405 * minus_garm_vy_leg3;
+        let t409 = t399 * t393 + s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
+            + t407 * twist[1];
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t409;
+        let t411 = t394 * rate_cross_leg3;
         let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t423 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t424 = rate_cross_leg3 * rate_cross_leg3;
-        let t431 = t410 * t402 + 0.53 * c_rod_leg3 * (t423 + t424)
+        let t418 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t419 = rate_cross_leg3 * rate_cross_leg3;
+        let t426 = t405 * t397 + 0.53 * c_rod_leg3 * (t418 + t419)
             - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2]);
-        let t435 = acceleration[1] - t399 * minus_rate_rod_leg3;
-        let t437 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-            - (t394 * t402 + t416 + t416) - t404 * t431 + t412 * t435;
-        let t438 = 1.8867924528301887 * t437;
-        let t439 = t384 * t438;
-        let t441 = minus_rate_rod_leg3 * (1.8867924528301887 * t414);
-        let t442 = t439 - t441;
-        let t444 = 1.8867924528301887 * t416;
-        let t445 = t444 + t438;
-        let t446 = t444 + t445;
-        let t449 = t384 * t414;
-        let t451 = 3.5599857600569598 * (t449 * t449);
-        let t452 = t424 - t451;
-        let t453 = t384 * t452;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t435;
-        let t455 = t453 - minus_rate_dot_rod_leg3;
-        let t462 = parameters[41] * t442 + parameters[42] * t446 + parameters[43] * t455
-            + parameters[44] * t441 + parameters[45] * (t452 - t423);
-        let t465 = 9.81 * s_arm_leg3;
-        let t467 = t465 + 0.2 * t402;
-        let rate_dot_arm_leg3 = t395 * (t431 - t384 * t435);
-        let t473 = 9.81 * c_arm_leg3;
-        let t474 = 0.2 * rate_dot_arm_leg3 - t473;
-        let t476 = s_cross_leg3 * t467 + c_cross_leg3 * t474;
-        let t481 = s_cross_leg3 * t474 - c_cross_leg3 * t467;
-        let t482 = s_rod_leg3 * t481;
-        let t486 = t442 - t441;
-        let t495 = t453 + minus_rate_dot_rod_leg3;
-        let t497 = parameters[42] * t486 - parameters[41] * t444
-            + parameters[43] * (t423 - t451) + parameters[44] * t445
-            - parameters[45] * t495;
-        let t502 = c_rod_leg3 * t481;
-        let t506 = s_rod_leg3
-            * (t462 - parameters[46] * t441 - parameters[48] * t476
-                + parameters[49] * t482)
+        let t430 = acceleration[1] - t394 * minus_rate_rod_leg3;
+        let t432 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - (t389 * t397 + t411 + t411) - t399 * t426 + t407 * t430;
+        let t433 = 1.8867924528301887 * t432;
+        let t434 = t379 * t433;
+        let t436 = minus_rate_rod_leg3 * (1.8867924528301887 * t409);
+        let t437 = t434 - t436;
+        let t439 = 1.8867924528301887 * t411;
+        let t440 = t439 + t433;
+        let t441 = t439 + t440;
+        let t444 = t379 * t409;
+        let t446 = 3.5599857600569598 * (t444 * t444);
+        let t447 = t419 - t446;
+        let t448 = t379 * t447;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t430;
+        let t450 = t448 - minus_rate_dot_rod_leg3;
+        let t457 = parameters[41] * t437 + parameters[42] * t441 + parameters[43] * t450
+            + parameters[44] * t436 + parameters[45] * (t447 - t418);
+        let t460 = 9.81 * s_arm_leg3;
+        let t462 = t460 + 0.2 * t397;
+        let rate_dot_arm_leg3 = t390 * (t426 - t379 * t430);
+        let t468 = 9.81 * c_arm_leg3;
+        let t469 = 0.2 * rate_dot_arm_leg3 - t468;
+        let t471 = s_cross_leg3 * t462 + c_cross_leg3 * t469;
+        let t476 = s_cross_leg3 * t469 - c_cross_leg3 * t462;
+        let t477 = s_rod_leg3 * t476;
+        let t481 = t437 - t436;
+        let t490 = t448 + minus_rate_dot_rod_leg3;
+        let t492 = parameters[42] * t481 - parameters[41] * t439
+            + parameters[43] * (t418 - t446) + parameters[44] * t440
+            - parameters[45] * t490;
+        let t497 = c_rod_leg3 * t476;
+        let t501 = s_rod_leg3
+            * (t457 - parameters[46] * t436 - parameters[48] * t471
+                + parameters[49] * t477)
             + c_rod_leg3
-                * (t497 + parameters[46] * t444 + parameters[47] * t476
-                    + parameters[49] * t502);
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t395;
-        let t520 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t473
-            + parameters[36] * t465 + parameters[37] * rate_dot_arm_leg3
+                * (t492 + parameters[46] * t439 + parameters[47] * t471
+                    + parameters[49] * t497);
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t390;
+        let t515 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t468
+            + parameters[36] * t460 + parameters[37] * rate_dot_arm_leg3
             - parameters[38] * minus_rate_arm_leg3
             - ::overact::math::signed(parameters[39], minus_rate_arm_leg3)
             + parameters[40];
-        let t530 = c_rod_leg3 * t394
-            * (parameters[48] * t495 - parameters[47] * (t452 + t423)
-                + parameters[49] * t438 + parameters[50] * t502);
-        let t540 = t394 * s_rod_leg3
-            * (parameters[47] * t455 - parameters[48] * (t451 + t423)
-                - parameters[49] * t439 - parameters[50] * t482);
-        let t550 = t530 - t540
-            - t410
-                * (parameters[48] * t486 - parameters[47] * t446 - parameters[49] * t424
-                    - parameters[50] * t476);
-        let t551 = t520 + t550;
-        let t557 = 1.0 / s_cross_leg4;
-        let t558 = 5.0 * t557;
-        let t561 = 1.0 / c_rod_leg4;
-        let t562 = s_rod_leg4 * t561;
-        let garm_vx_leg4 = t558 * t562;
-        let t564 = 0.2 * c_cross_leg4;
-        let t565 = t562 * twist[0];
+        let t525 = c_rod_leg3 * t389
+            * (parameters[48] * t490 - parameters[47] * (t447 + t418)
+                + parameters[49] * t433 + parameters[50] * t497);
+        let t535 = t389 * s_rod_leg3
+            * (parameters[47] * t450 - parameters[48] * (t446 + t418)
+                - parameters[49] * t434 - parameters[50] * t477);
+        let t545 = t525 - t535
+            - t405
+                * (parameters[48] * t481 - parameters[47] * t441 - parameters[49] * t419
+                    - parameters[50] * t471);
+        let t546 = t515 + t545;
+        let t552 = 1.0 / s_cross_leg4;
+        let t553 = 5.0 * t552;
+        let t556 = 1.0 / c_rod_leg4;
+        let t557 = s_rod_leg4 * t556;
+        let garm_vx_leg4 = t553 * t557;
+        let t559 = 0.2 * c_cross_leg4;
+        let t560 = t557 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t576 = c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2];
-        let rate_arm_leg4 = t558 * (t565 - t576);
-        let t579 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t561;
+        let t571 = c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2];
+        let rate_arm_leg4 = t553 * (t560 - t571);
+        let t574 = rate_arm_leg4 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.8867924528301887 * t556;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t584 = rate_rod_leg4 * rate_rod_leg4;
-        let t585 = c_cross_leg4 * t557;
-        let t591 = t564 * garm_vx_leg4;
-        let t593 = t585 * t576 + s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
-            - t591 * twist[0];
-        let rate_cross_leg4 = grod_vx_leg4 * t593;
-        let t595 = rate_cross_leg4 * rate_cross_leg4;
-        let t602 = t564 * t579 + 0.53 * c_rod_leg4 * (t584 + t595)
+        let t579 = rate_rod_leg4 * rate_rod_leg4;
+        let t580 = c_cross_leg4 * t552;
+        let t586 = t559 * garm_vx_leg4;
+        let t588 = t580 * t571 + s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
+            - t586 * twist[0];
+        let rate_cross_leg4 = grod_vx_leg4 * t588;
+        let t590 = rate_cross_leg4 * rate_cross_leg4;
+        let t597 = t559 * t574 + 0.53 * c_rod_leg4 * (t579 + t590)
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2]);
-        let t604 = acceleration[0] + t565 * rate_rod_leg4;
-        let rate_dot_arm_leg4 = t558 * (t602 + t562 * t604);
-        let t609 = 9.81 * c_arm_leg4;
-        let t612 = 9.81 * s_arm_leg4;
-        let t621 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t609
-            + parameters[53] * t612 + parameters[54] * rate_dot_arm_leg4
+        let t599 = acceleration[0] + t560 * rate_rod_leg4;
+        let rate_dot_arm_leg4 = t553 * (t597 + t557 * t599);
+        let t604 = 9.81 * c_arm_leg4;
+        let t607 = 9.81 * s_arm_leg4;
+        let t616 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t604
+            + parameters[53] * t607 + parameters[54] * rate_dot_arm_leg4
             + parameters[55] * rate_arm_leg4
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t622 = 0.2 * s_cross_leg4;
-        let t624 = t562 * t593;
-        let t626 = 3.5599857600569598 * (t624 * t624);
-        let t627 = t595 - t626;
-        let t628 = t562 * t627;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t604;
-        let t630 = t628 - rate_dot_rod_leg4;
-        let t639 = t565 * rate_cross_leg4;
-        let t646 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-            - (t622 * t579 - t639 - t639) - t585 * t602 - t591 * t604;
-        let t647 = 1.8867924528301887 * t646;
-        let t651 = 0.2 * rate_dot_arm_leg4 - t609;
-        let t654 = t612 + 0.2 * t579;
-        let t656 = s_cross_leg4 * t651 - c_cross_leg4 * t654;
-        let t657 = c_rod_leg4 * t656;
-        let t660 = c_rod_leg4 * t622
-            * (parameters[65] * t630 - parameters[64] * (t627 + t584)
-                + parameters[66] * t647 + parameters[67] * t657);
-        let t662 = t628 + rate_dot_rod_leg4;
-        let t667 = t562 * t647;
-        let t670 = s_rod_leg4 * t656;
-        let t673 = t622 * s_rod_leg4
-            * (parameters[64] * t662 - parameters[65] * (t626 + t584)
-                - parameters[66] * t667 - parameters[67] * t670);
-        let t675 = 1.8867924528301887 * t639;
-        let t676 = t647 - t675;
-        let t677 = t675 - t676;
-        let t680 = rate_rod_leg4 * (1.8867924528301887 * t593);
-        let t681 = t667 + t680;
-        let t682 = t680 + t681;
-        let t689 = s_cross_leg4 * t654 + c_cross_leg4 * t651;
-        let t693 = t660 - t673
-            - t564
-                * (parameters[64] * t677 + parameters[65] * t682 - parameters[66] * t595
-                    - parameters[67] * t689);
-        let t694 = t621 + t693;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * t591;
-        let t706 = parameters[58] * t681 - parameters[59] * t677 + parameters[60] * t662
-            - parameters[61] * t680 + parameters[62] * (t627 - t584);
-        let t723 = parameters[58] * t675 + parameters[59] * t682
-            + parameters[60] * (t584 - t626) + parameters[61] * t676
-            - parameters[62] * t630;
-        let t731 = s_rod_leg4
-            * (t706 + parameters[63] * t680 - parameters[65] * t689
-                + parameters[66] * t670)
+        let t617 = 0.2 * s_cross_leg4;
+        let t619 = 1.8867924528301887 * t588;
+        let t620 = t619 * t619;
+        let t621 = t557 * t620;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t599;
+        let t623 = t621 - rate_dot_rod_leg4;
+        let t632 = t560 * rate_cross_leg4;
+        let t639 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
+            - (t617 * t574 - t632 - t632) - t580 * t597 - t586 * t599;
+        let t640 = 1.8867924528301887 * t639;
+        let t644 = 0.2 * rate_dot_arm_leg4 - t604;
+        let t647 = t607 + 0.2 * t574;
+        let t649 = s_cross_leg4 * t644 - c_cross_leg4 * t647;
+        let t650 = c_rod_leg4 * t649;
+        let t653 = c_rod_leg4 * t617
+            * (parameters[65] * t623 - parameters[64] * (t620 + t579)
+                + parameters[66] * t640 + parameters[67] * t650);
+        let t655 = t621 + rate_dot_rod_leg4;
+        let t657 = t557 * t621;
+        let t661 = t557 * t640;
+        let t664 = s_rod_leg4 * t649;
+        let t667 = t617 * s_rod_leg4
+            * (parameters[64] * t655 - parameters[65] * (t657 + t579)
+                - parameters[66] * t661 - parameters[67] * t664);
+        let t669 = 1.8867924528301887 * t632;
+        let t670 = t640 - t669;
+        let t671 = t669 - t670;
+        let t673 = rate_rod_leg4 * t619;
+        let t674 = t661 + t673;
+        let t675 = t673 + t674;
+        let t682 = s_cross_leg4 * t647 + c_cross_leg4 * t644;
+        let t686 = t653 - t667
+            - t559
+                * (parameters[64] * t671 + parameters[65] * t675 - parameters[66] * t590
+                    - parameters[67] * t682);
+        let t687 = t616 + t686;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t586;
+        let t699 = parameters[58] * t674 - parameters[59] * t671 + parameters[60] * t655
+            - parameters[61] * t673 + parameters[62] * (t620 - t579);
+        let t716 = parameters[58] * t669 + parameters[59] * t675
+            + parameters[60] * (t579 - t657) + parameters[61] * t670
+            - parameters[62] * t623;
+        let t724 = s_rod_leg4
+            * (t699 + parameters[63] * t673 - parameters[65] * t682
+                + parameters[66] * t664)
             + c_rod_leg4
-                * (t723 - parameters[63] * t675 + parameters[64] * t689
-                    + parameters[66] * t657);
-        let t743 = parameters[59] * (t626 - t627) - parameters[58] * t628
-            + parameters[60] * t667 + parameters[61] * t628 + parameters[62] * t647;
-        let t751 = garm_vx_leg4 * t694 - minus_gcross_vx_leg4 * t731
+                * (t716 - parameters[63] * t669 + parameters[64] * t682
+                    + parameters[66] * t650);
+        let t736 = parameters[59] * (t657 - t620) - parameters[58] * t621
+            + parameters[60] * t661 + parameters[61] * t621 + parameters[62] * t640;
+        let t744 = garm_vx_leg4 * t687 - minus_gcross_vx_leg4 * t724
             + grod_vx_leg4
-                * (t743 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t670
-                    - parameters[65] * t657);
-        let t756 = garm_vx_leg1 * t133 - minus_gcross_vx_leg1 * t171 + t371
-            + gcross_vx_leg3 * t506 - minus_garm_vx_leg3 * t551 + t751
+                * (t736 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t664
+                    - parameters[65] * t650);
+        let t749 = garm_vx_leg1 * t131 - minus_gcross_vx_leg1 * t169 + t366
+            + gcross_vx_leg3 * t501 - minus_garm_vx_leg3 * t546 + t744
             + acceleration[0] * parameters[68] + acceleration[0] * parameters[69];
-        let t763 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
+        let t756 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t763, 22.533170865545557, "actuators")?;
-        let t764 = 1.0 / t763;
+        ::overact::guard::platform(t756, 22.533170865545557, "actuators")?;
+        let t757 = 1.0 / t756;
         let garm_vy_leg1 = t11 * t23;
-        let garm_vy_leg2 = c_armcross_leg2 * t182;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t558;
-        let t775 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg2 = c_armcross_leg2 * t180;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t553;
+        let t768 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             + minus_garm_vy_leg3 * minus_garm_vx_leg3
             - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t776 = t775 * t764;
-        let t785 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+        let t769 = t768 * t757;
+        let t778 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
             + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t775 * t776;
-        ::overact::guard::platform(t785, 22.53317086554555, "actuators")?;
-        let t786 = 1.0 / t785;
+            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t768 * t769;
+        ::overact::guard::platform(t778, 22.53317086554555, "actuators")?;
+        let t779 = 1.0 / t778;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t801 = parameters[8] * (t67 - t68) - parameters[7] * t69
-            - parameters[9] * t106 + parameters[10] * t69 - parameters[11] * t87;
-        let t809 = garm_vy_leg1 * t133 - minus_gcross_vy_leg1 * t171
+        let t794 = parameters[8] * (t101 - t66) - parameters[7] * t67
+            - parameters[9] * t105 + parameters[10] * t67 - parameters[11] * t85;
+        let t802 = garm_vy_leg1 * t131 - minus_gcross_vy_leg1 * t169
             + grod_vy_leg1
-                * (t801 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t109
-                    - parameters[14] * t96);
-        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t181 * c_arm_leg2);
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * t412;
-        let t829 = parameters[42] * (t451 - t452) - parameters[41] * t453
-            + parameters[43] * t439 + parameters[44] * t453 + parameters[45] * t438;
-        let t837 = gcross_vy_leg3 * t506 - minus_garm_vy_leg3 * t551
+                * (t794 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t108
+                    - parameters[14] * t94);
+        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t179 * c_arm_leg2);
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * t407;
+        let t822 = parameters[42] * (t446 - t447) - parameters[41] * t448
+            + parameters[43] * t434 + parameters[44] * t448 + parameters[45] * t433;
+        let t830 = gcross_vy_leg3 * t501 - minus_garm_vy_leg3 * t546
             - minus_grod_vy_leg3
-                * (t829 - parameters[46] * minus_rate_dot_rod_leg3
-                    - parameters[47] * t482 - parameters[48] * t502);
-        let gcross_vy_leg4 = grod_vx_leg4 * (t557 * c_arm_leg4);
-        let t848 = t809 + garm_vy_leg2 * t351 - minus_gcross_vy_leg2 * t307 + t837
-            + gcross_vy_leg4 * t731 - minus_garm_vy_leg4 * t694
+                * (t822 - parameters[46] * minus_rate_dot_rod_leg3
+                    - parameters[47] * t477 - parameters[48] * t497);
+        let gcross_vy_leg4 = grod_vx_leg4 * (t552 * c_arm_leg4);
+        let t841 = t802 + garm_vy_leg2 * t346 - minus_gcross_vy_leg2 * t302 + t830
+            + gcross_vy_leg4 * t724 - minus_garm_vy_leg4 * t687
             + acceleration[1] * parameters[68] + acceleration[1] * parameters[69];
-        let t850 = t848 - t756 * t776;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t395;
+        let t843 = t841 - t749 * t769;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t390;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t182;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t558;
-        let t869 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t180;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t553;
+        let t862 = minus_garm_vx_leg2 * minus_garm_vz_leg2
             - garm_vx_leg1 * minus_garm_vz_leg1 + minus_garm_vx_leg3 * minus_garm_vz_leg3
             - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t870 = t869 * t764;
-        let t872 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+        let t863 = t862 * t757;
+        let t865 = minus_garm_vy_leg3 * minus_garm_vz_leg3
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t775 * t870;
-        let t873 = t872 * t786;
-        let gcross_vz_leg2 = minus_grod_vx_leg2 * (t181 * s_arm_leg2);
+            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t768 * t863;
+        let t866 = t865 * t779;
+        let gcross_vz_leg2 = minus_grod_vx_leg2 * (t179 * s_arm_leg2);
         let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t10 * s_arm_leg1);
-        let gcross_vz_leg3 = minus_grod_vy_leg3 * (t379 * s_arm_leg3);
-        let t890 = gcross_vz_leg2 * t307 - minus_garm_vz_leg2 * t351
-            - (minus_garm_vz_leg1 * t133 - minus_minus_gcross_vz_leg1 * t171)
-            + gcross_vz_leg3 * t506 - minus_garm_vz_leg3 * t551;
-        let gcross_vz_leg4 = grod_vx_leg4 * (t557 * s_arm_leg4);
-        let t897 = acceleration[2] + 9.81;
-        let t903 = t890 + gcross_vz_leg4 * t731 - minus_garm_vz_leg4 * t694
-            + parameters[68] * t897 + parameters[69] * t897 - t756 * t870;
-        let t916 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let gcross_vz_leg3 = minus_grod_vy_leg3 * (t374 * s_arm_leg3);
+        let t883 = gcross_vz_leg2 * t302 - minus_garm_vz_leg2 * t346
+            - (minus_garm_vz_leg1 * t131 - minus_minus_gcross_vz_leg1 * t169)
+            + gcross_vz_leg3 * t501 - minus_garm_vz_leg3 * t546;
+        let gcross_vz_leg4 = grod_vx_leg4 * (t552 * s_arm_leg4);
+        let t890 = acceleration[2] + 9.81;
+        let t896 = t883 + gcross_vz_leg4 * t724 - minus_garm_vz_leg4 * t687
+            + parameters[68] * t890 + parameters[69] * t890 - t749 * t863;
+        let t909 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t869 * t870 - t872 * t873;
-        ::overact::guard::platform(t916, 66.40191223716292, "actuators")?;
-        let t917 = (t903 - t873 * t850) / t916;
-        let t919 = t786 * t850 - t873 * t917;
-        let t923 = t756 * t764 - t776 * t919 - t870 * t917;
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t862 * t863 - t865 * t866;
+        ::overact::guard::platform(t909, 66.40191223716292, "actuators")?;
+        let t910 = (t896 - t866 * t843) / t909;
+        let t912 = t779 * t843 - t866 * t910;
+        let t916 = t749 * t757 - t769 * t912 - t863 * t910;
         Ok([
-            garm_vx_leg1 * t923 + garm_vy_leg1 * t919 - minus_garm_vz_leg1 * t917,
-            garm_vy_leg2 * t919 - minus_garm_vx_leg2 * t923 - minus_garm_vz_leg2 * t917,
-            -(minus_garm_vx_leg3 * t923 + minus_garm_vy_leg3 * t919
-                + minus_garm_vz_leg3 * t917),
-            garm_vx_leg4 * t923 - minus_garm_vy_leg4 * t919 - minus_garm_vz_leg4 * t917,
+            garm_vx_leg1 * t916 + garm_vy_leg1 * t912 - minus_garm_vz_leg1 * t910,
+            garm_vy_leg2 * t912 - minus_garm_vx_leg2 * t916 - minus_garm_vz_leg2 * t910,
+            -(minus_garm_vx_leg3 * t916 + minus_garm_vy_leg3 * t912
+                + minus_garm_vz_leg3 * t910),
+            garm_vx_leg4 * t916 - minus_garm_vy_leg4 * t912 - minus_garm_vz_leg4 * t910,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).

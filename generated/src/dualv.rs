@@ -1410,7 +1410,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 436 operations (155 additions, 273 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 306 intermediates.
+    /// 420 operations (151 additions, 261 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 290 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1470,233 +1470,222 @@ impl DualV {
         let t83 = g2_wz_leg1 * minus_rate_dot_2_leg1;
         let t84 = 3.5714285714285716 * t25;
         let t88 = 3.5714285714285716 * t35;
-        let t92 = pose[0] + t2;
-        let t93 = t92 + 0.3950502153918333;
-        let t95 = pose[1] - t7;
-        let t97 = t95 * t95;
-        let t98 = t93 * t93 + t97;
-        let t100 = 0.0784 / t98 - 0.25;
-        ::overact::guard::reach(t100, "leg3")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let t103 = 0.5 * t93 + t95 * t101;
-        let t104 = t93 - t103;
-        let c12_leg3 = 3.5714285714285716 * t104;
-        let t107 = 0.5 * t95;
-        let t109 = t107 - t93 * t101;
-        let t110 = t95 - t109;
-        let s12_leg3 = 3.5714285714285716 * t110;
-        let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
-        let t114 = acceleration[0] - t24;
-        let t116 = acceleration[1] + t34;
-        let t118 = t104 * t114 + t110 * t116;
-        let s3_leg3 = s_phi * c12_leg3 - c_phi * s12_leg3;
-        let t124 = t98 * t101;
-        ::overact::guard::leg(t124, 0.07839913810297301, "leg3")?;
-        let t125 = 1.0 / t124;
-        let g1_vx_leg3 = t104 * t125;
-        let t127 = twist[0] + t31;
-        let g1_vy_leg3 = t110 * t125;
-        let t130 = twist[1] + t21;
-        let rate_1_leg3 = g1_vx_leg3 * t127 + g1_vy_leg3 * t130;
-        let t133 = rate_1_leg3 * rate_1_leg3;
-        let t136 = t98 - 0.1568;
-        let minus_g2_vx_leg3 = t103 * t125;
-        let minus_g2_vy_leg3 = t109 * t125;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t127 + minus_g2_vy_leg3 * t130;
-        let t142 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t144 = t118 + 0.0784 * t142;
-        let t145 = 0.5 * t136;
-        let rate_dot_1_leg3 = t125 * (t144 + t133 * t145);
-        let t156 = t103 * t114 + t109 * t116 + 0.0784 * t133;
-        let minus_rate_dot_2_leg3 = t125 * (t156 + t142 * t145);
-        let t163 = c3_leg3 * (3.5714285714285716 * t118)
-            + s3_leg3
-                * (3.5714285714285716 * (t124 * t133)
-                    + 1.7857142857142858 * (t136 * rate_dot_1_leg3)
-                    - 0.28 * minus_rate_dot_2_leg3);
-        let t164 = 0.11 * acceleration[2];
-        let t165 = t163 - t164;
-        let t167 = 0.39285714285714285 * (t164 - t165);
-        let t171 = 3.5714285714285716 * t74;
-        let t173 = 3.5714285714285716 * t47;
-        let t185 = rate_1_leg1 + minus_rate_2_leg1;
-        let t186 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t188 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t190 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t195 = minus_rate_2_leg1 + twist[2];
-        let t198 = 1.0 - g2_wz_leg1;
-        let t203 = t3 + 0.3950502153918333;
-        let t206 = t203 * t203 + t10;
-        let t208 = 0.0784 / t206 - 0.25;
-        ::overact::guard::reach(t208, "leg2")?;
-        let t209 = ::overact::math::sqrt(t208);
-        let t211 = 0.5 * t203 - t8 * t209;
-        let t212 = t203 - t211;
-        let t213 = t206 * t209;
-        ::overact::guard::leg(t213, 0.07839913810297301, "leg2")?;
-        let t214 = 1.0 / t213;
-        let minus_g1_vx_leg2 = t212 * t214;
-        let t218 = t27 + t203 * t209;
-        let t219 = t8 - t218;
-        let g2_vx_leg2 = t211 * t214;
-        let g2_vy_leg2 = t218 * t214;
+        let t94 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t95 = 0.11 * acceleration[2];
+        let t97 = 0.39285714285714285 * (t95 - t94);
+        let t101 = 3.5714285714285716 * t74;
+        let t103 = 3.5714285714285716 * t47;
+        let t115 = rate_1_leg1 + minus_rate_2_leg1;
+        let t116 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t118 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t120 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t125 = minus_rate_2_leg1 + twist[2];
+        let t128 = 1.0 - g2_wz_leg1;
+        let t133 = t3 + 0.3950502153918333;
+        let t136 = t133 * t133 + t10;
+        let t138 = 0.0784 / t136 - 0.25;
+        ::overact::guard::reach(t138, "leg2")?;
+        let t139 = ::overact::math::sqrt(t138);
+        let t141 = 0.5 * t133 - t8 * t139;
+        let t142 = t133 - t141;
+        let t143 = t136 * t139;
+        ::overact::guard::leg(t143, 0.07839913810297301, "leg2")?;
+        let t144 = 1.0 / t143;
+        let minus_g1_vx_leg2 = t142 * t144;
+        let t148 = t27 + t133 * t139;
+        let t149 = t8 - t148;
+        let g2_vx_leg2 = t141 * t144;
+        let g2_vy_leg2 = t148 * t144;
         let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t227 = rate_2_leg2 * rate_2_leg2;
-        let t229 = t212 * t25 + t219 * t35 + 0.0784 * t227;
-        let minus_g1_vy_leg2 = t219 * t214;
+        let t157 = rate_2_leg2 * rate_2_leg2;
+        let t159 = t142 * t25 + t149 * t35 + 0.0784 * t157;
+        let minus_g1_vy_leg2 = t149 * t144;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t234 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t236 = 0.5 * (t206 - 0.1568);
-        let minus_rate_dot_1_leg2 = t214 * (t229 + t234 * t236);
-        let t240 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t241 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t164 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t166 = 0.5 * (t136 - 0.1568);
+        let minus_rate_dot_1_leg2 = t144 * (t159 + t164 * t166);
+        let t170 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t171 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t245 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t256 = t211 * t25 + t218 * t35 + 0.0784 * t234;
-        let rate_dot_2_leg2 = t214 * (t256 + t227 * t236);
-        let t260 = g2_vx_leg2 * rate_dot_2_leg2;
-        let t261 = g2_vy_leg2 * rate_dot_2_leg2;
+        let t175 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t186 = t141 * t25 + t148 * t35 + 0.0784 * t164;
+        let rate_dot_2_leg2 = t144 * (t186 + t157 * t166);
+        let t190 = g2_vx_leg2 * rate_dot_2_leg2;
+        let t191 = g2_vy_leg2 * rate_dot_2_leg2;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t265 = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        let t275 = 3.5714285714285716 * t256;
-        let t277 = 3.5714285714285716 * t229;
-        let t289 = minus_rate_1_leg2 + rate_2_leg2;
-        let t290 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t292 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t294 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t299 = twist[2] - rate_2_leg2;
-        let t302 = minus_g2_wz_leg2 + 1.0;
-        let t307 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t308 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t195 = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let t205 = 3.5714285714285716 * t186;
+        let t207 = 3.5714285714285716 * t159;
+        let t219 = minus_rate_1_leg2 + rate_2_leg2;
+        let t220 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t222 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t224 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t229 = twist[2] - rate_2_leg2;
+        let t232 = minus_g2_wz_leg2 + 1.0;
+        let t237 = pose[0] + t2;
+        let t238 = t237 + 0.3950502153918333;
+        let t240 = pose[1] - t7;
+        let t242 = t240 * t240;
+        let t243 = t238 * t238 + t242;
+        let t245 = 0.0784 / t243 - 0.25;
+        ::overact::guard::reach(t245, "leg3")?;
+        let t246 = ::overact::math::sqrt(t245);
+        let t248 = 0.5 * t238 + t240 * t246;
+        let t249 = t238 - t248;
+        let t250 = t243 * t246;
+        ::overact::guard::leg(t250, 0.07839913810297301, "leg3")?;
+        let t251 = 1.0 / t250;
+        let g1_vx_leg3 = t249 * t251;
+        let t253 = acceleration[0] - t24;
+        let t255 = 0.5 * t240;
+        let t257 = t255 - t238 * t246;
+        let t258 = t240 - t257;
+        let t259 = acceleration[1] + t34;
+        let minus_g2_vx_leg3 = t248 * t251;
+        let t263 = twist[0] + t31;
+        let minus_g2_vy_leg3 = t257 * t251;
+        let t266 = twist[1] + t21;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vy_leg3 * t266;
+        let t269 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t271 = t249 * t253 + t258 * t259 + 0.0784 * t269;
+        let g1_vy_leg3 = t258 * t251;
+        let rate_1_leg3 = g1_vx_leg3 * t263 + g1_vy_leg3 * t266;
+        let t276 = rate_1_leg3 * rate_1_leg3;
+        let t278 = 0.5 * (t243 - 0.1568);
+        let rate_dot_1_leg3 = t251 * (t271 + t276 * t278);
+        let t282 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t283 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t312 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t319 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t320 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let t287 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t298 = t248 * t253 + t257 * t259 + 0.0784 * t276;
+        let minus_rate_dot_2_leg3 = t251 * (t298 + t269 * t278);
+        let t302 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t303 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t324 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t325 = 3.5714285714285716 * t114;
-        let t329 = 3.5714285714285716 * t116;
-        let t333 = 0.39285714285714285 * t163;
-        let t337 = 3.5714285714285716 * t156;
-        let t339 = 3.5714285714285716 * t144;
-        let t351 = rate_1_leg3 + minus_rate_2_leg3;
-        let t352 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t354 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t356 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t361 = minus_rate_2_leg3 + twist[2];
-        let t364 = minus_g2_wz_leg3 + 1.0;
-        let t369 = t92 - 0.3950502153918333;
-        let t372 = t369 * t369 + t97;
-        let t374 = 0.0784 / t372 - 0.25;
-        ::overact::guard::reach(t374, "leg4")?;
-        let t375 = ::overact::math::sqrt(t374);
-        let t377 = 0.5 * t369 - t95 * t375;
-        let t378 = t369 - t377;
-        let t379 = t372 * t375;
-        ::overact::guard::leg(t379, 0.07839913810297301, "leg4")?;
-        let t380 = 1.0 / t379;
-        let minus_g1_vx_leg4 = t378 * t380;
-        let t384 = t107 + t369 * t375;
-        let t385 = t95 - t384;
-        let g2_vx_leg4 = t377 * t380;
-        let g2_vy_leg4 = t384 * t380;
-        let rate_2_leg4 = g2_vx_leg4 * t127 + g2_vy_leg4 * t130;
-        let t393 = rate_2_leg4 * rate_2_leg4;
-        let t395 = t378 * t114 + t385 * t116 + 0.0784 * t393;
-        let minus_g1_vy_leg4 = t385 * t380;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t127 + minus_g1_vy_leg4 * t130;
-        let t400 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t402 = 0.5 * (t372 - 0.1568);
-        let minus_rate_dot_1_leg4 = t380 * (t395 + t400 * t402);
-        let t406 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t407 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let t307 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t308 = 3.5714285714285716 * t253;
+        let t312 = 3.5714285714285716 * t259;
+        let t317 = 0.39285714285714285 * (t94 + t95);
+        let t321 = 3.5714285714285716 * t298;
+        let t323 = 3.5714285714285716 * t271;
+        let t335 = rate_1_leg3 + minus_rate_2_leg3;
+        let t336 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t338 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t340 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t345 = minus_rate_2_leg3 + twist[2];
+        let t348 = minus_g2_wz_leg3 + 1.0;
+        let t353 = t237 - 0.3950502153918333;
+        let t356 = t353 * t353 + t242;
+        let t358 = 0.0784 / t356 - 0.25;
+        ::overact::guard::reach(t358, "leg4")?;
+        let t359 = ::overact::math::sqrt(t358);
+        let t361 = 0.5 * t353 - t240 * t359;
+        let t362 = t353 - t361;
+        let t363 = t356 * t359;
+        ::overact::guard::leg(t363, 0.07839913810297301, "leg4")?;
+        let t364 = 1.0 / t363;
+        let minus_g1_vx_leg4 = t362 * t364;
+        let t368 = t255 + t353 * t359;
+        let t369 = t240 - t368;
+        let g2_vx_leg4 = t361 * t364;
+        let g2_vy_leg4 = t368 * t364;
+        let rate_2_leg4 = g2_vx_leg4 * t263 + g2_vy_leg4 * t266;
+        let t377 = rate_2_leg4 * rate_2_leg4;
+        let t379 = t362 * t253 + t369 * t259 + 0.0784 * t377;
+        let minus_g1_vy_leg4 = t369 * t364;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t263 + minus_g1_vy_leg4 * t266;
+        let t384 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t386 = 0.5 * (t356 - 0.1568);
+        let minus_rate_dot_1_leg4 = t364 * (t379 + t384 * t386);
+        let t390 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t391 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t411 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t422 = t377 * t114 + t384 * t116 + 0.0784 * t400;
-        let rate_dot_2_leg4 = t380 * (t422 + t393 * t402);
-        let t426 = g2_vx_leg4 * rate_dot_2_leg4;
-        let t427 = g2_vy_leg4 * rate_dot_2_leg4;
+        let t395 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t406 = t361 * t253 + t368 * t259 + 0.0784 * t384;
+        let rate_dot_2_leg4 = t364 * (t406 + t377 * t386);
+        let t410 = g2_vx_leg4 * rate_dot_2_leg4;
+        let t411 = g2_vy_leg4 * rate_dot_2_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t431 = g2_wz_leg4 * rate_dot_2_leg4;
-        let t441 = 3.5714285714285716 * t422;
-        let t443 = 3.5714285714285716 * t395;
-        let t455 = minus_rate_1_leg4 + rate_2_leg4;
-        let t456 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t458 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t460 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t465 = twist[2] - rate_2_leg4;
-        let t468 = 1.0 - g2_wz_leg4;
-        let t473 = 9.090909090909092 * t34;
-        let t474 = 9.090909090909092 * t24;
+        let t415 = g2_wz_leg4 * rate_dot_2_leg4;
+        let t425 = 3.5714285714285716 * t406;
+        let t427 = 3.5714285714285716 * t379;
+        let t439 = minus_rate_1_leg4 + rate_2_leg4;
+        let t440 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t442 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t444 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t449 = twist[2] - rate_2_leg4;
+        let t452 = 1.0 - g2_wz_leg4;
+        let t457 = 9.090909090909092 * t34;
+        let t458 = 9.090909090909092 * t24;
         Ok([
             [
                 t58, t58, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t78,
-                t84 - 0.28 * (t58 + t78), g1_vx_leg1 * t171 + minus_g2_vx_leg1 * t173, 0.0784 * t58,
-                t185 * t186, ::overact::math::signed(t186, t185), -t186, minus_g2_vx_leg1 * t195,
-                ::overact::math::signed(minus_g2_vx_leg1, t195), minus_g2_vx_leg1, t240, t240,
+                t84 - 0.28 * (t58 + t78), g1_vx_leg1 * t101 + minus_g2_vx_leg1 * t103, 0.0784 * t58,
+                t115 * t116, ::overact::math::signed(t116, t115), -t116, minus_g2_vx_leg1 * t125,
+                ::overact::math::signed(minus_g2_vx_leg1, t125), minus_g2_vx_leg1, t170, t170,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t260, t84 - 0.28 * (t240 + t260), -(minus_g1_vx_leg2 * t275 + g2_vx_leg2 * t277),
-                0.0784 * t240, t289 * t290, ::overact::math::signed(t290, t289), t290,
-                -(g2_vx_leg2 * t299), -::overact::math::signed(g2_vx_leg2, t299), -g2_vx_leg2, t307,
-                t307, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t319, t325 - 0.28 * (t307 + t319),
-                g1_vx_leg3 * t337 + minus_g2_vx_leg3 * t339, 0.0784 * t307, t351 * t352,
-                ::overact::math::signed(t352, t351), -t352, minus_g2_vx_leg3 * t361,
-                ::overact::math::signed(minus_g2_vx_leg3, t361), minus_g2_vx_leg3, t406, t406,
+                t190, t84 - 0.28 * (t170 + t190), -(minus_g1_vx_leg2 * t205 + g2_vx_leg2 * t207),
+                0.0784 * t170, t219 * t220, ::overact::math::signed(t220, t219), t220,
+                -(g2_vx_leg2 * t229), -::overact::math::signed(g2_vx_leg2, t229), -g2_vx_leg2, t282,
+                t282, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t302, t308 - 0.28 * (t282 + t302),
+                g1_vx_leg3 * t321 + minus_g2_vx_leg3 * t323, 0.0784 * t282, t335 * t336,
+                ::overact::math::signed(t336, t335), -t336, minus_g2_vx_leg3 * t345,
+                ::overact::math::signed(minus_g2_vx_leg3, t345), minus_g2_vx_leg3, t390, t390,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                t426, t325 - 0.28 * (t406 + t426), -(minus_g1_vx_leg4 * t441 + g2_vx_leg4 * t443),
-                0.0784 * t406, t455 * t456, ::overact::math::signed(t456, t455), t456,
-                -(g2_vx_leg4 * t465), -::overact::math::signed(g2_vx_leg4, t465), -g2_vx_leg4, 0.0,
-                -t473, t474, acceleration[0],
+                t410, t308 - 0.28 * (t390 + t410), -(minus_g1_vx_leg4 * t425 + g2_vx_leg4 * t427),
+                0.0784 * t390, t439 * t440, ::overact::math::signed(t440, t439), t440,
+                -(g2_vx_leg4 * t449), -::overact::math::signed(g2_vx_leg4, t449), -g2_vx_leg4, 0.0,
+                -t457, t458, acceleration[0],
             ],
             [
                 t59, t59, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t79,
-                t88 - 0.28 * (t59 + t79), g1_vy_leg1 * t171 + minus_g2_vy_leg1 * t173, 0.0784 * t59,
-                t185 * t188, ::overact::math::signed(t188, t185), -t188, minus_g2_vy_leg1 * t195,
-                ::overact::math::signed(minus_g2_vy_leg1, t195), minus_g2_vy_leg1, t241, t241,
+                t88 - 0.28 * (t59 + t79), g1_vy_leg1 * t101 + minus_g2_vy_leg1 * t103, 0.0784 * t59,
+                t115 * t118, ::overact::math::signed(t118, t115), -t118, minus_g2_vy_leg1 * t125,
+                ::overact::math::signed(minus_g2_vy_leg1, t125), minus_g2_vy_leg1, t171, t171,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                t261, t88 - 0.28 * (t241 + t261), -(minus_g1_vy_leg2 * t275 + g2_vy_leg2 * t277),
-                0.0784 * t241, t289 * t292, ::overact::math::signed(t292, t289), t292,
-                -(g2_vy_leg2 * t299), -::overact::math::signed(g2_vy_leg2, t299), -g2_vy_leg2, t308,
-                t308, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t320, t329 - 0.28 * (t308 + t320),
-                g1_vy_leg3 * t337 + minus_g2_vy_leg3 * t339, 0.0784 * t308, t351 * t354,
-                ::overact::math::signed(t354, t351), -t354, minus_g2_vy_leg3 * t361,
-                ::overact::math::signed(minus_g2_vy_leg3, t361), minus_g2_vy_leg3, t407, t407,
+                t191, t88 - 0.28 * (t171 + t191), -(minus_g1_vy_leg2 * t205 + g2_vy_leg2 * t207),
+                0.0784 * t171, t219 * t222, ::overact::math::signed(t222, t219), t222,
+                -(g2_vy_leg2 * t229), -::overact::math::signed(g2_vy_leg2, t229), -g2_vy_leg2, t283,
+                t283, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t303, t312 - 0.28 * (t283 + t303),
+                g1_vy_leg3 * t321 + minus_g2_vy_leg3 * t323, 0.0784 * t283, t335 * t338,
+                ::overact::math::signed(t338, t335), -t338, minus_g2_vy_leg3 * t345,
+                ::overact::math::signed(minus_g2_vy_leg3, t345), minus_g2_vy_leg3, t391, t391,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                t427, t329 - 0.28 * (t407 + t427), -(minus_g1_vy_leg4 * t441 + g2_vy_leg4 * t443),
-                0.0784 * t407, t455 * t458, ::overact::math::signed(t458, t455), t458,
-                -(g2_vy_leg4 * t465), -::overact::math::signed(g2_vy_leg4, t465), -g2_vy_leg4, 0.0,
-                -t474, -t473, acceleration[1],
+                t411, t312 - 0.28 * (t391 + t411), -(minus_g1_vy_leg4 * t425 + g2_vy_leg4 * t427),
+                0.0784 * t391, t439 * t442, ::overact::math::signed(t442, t439), t442,
+                -(g2_vy_leg4 * t449), -::overact::math::signed(g2_vy_leg4, t449), -g2_vy_leg4, 0.0,
+                -t458, -t457, acceleration[1],
             ],
             [
                 -t63, -t63, -(minus_g1_wz_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t83,
-                t167 + 0.28 * (t63 + t83), -(minus_g1_wz_leg1 * t171 + g2_wz_leg1 * t173),
-                -(0.0784 * t63), -(t185 * t190), -::overact::math::signed(t190, t185), t190,
-                t195 * t198, ::overact::math::signed(t198, t195), t198, -t245, -t245,
+                t97 + 0.28 * (t63 + t83), -(minus_g1_wz_leg1 * t101 + g2_wz_leg1 * t103),
+                -(0.0784 * t63), -(t115 * t120), -::overact::math::signed(t120, t115), t120,
+                t125 * t128, ::overact::math::signed(t128, t125), t128, -t175, -t175,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t265,
-                t167 + 0.28 * (t245 + t265), g1_wz_leg2 * t275 + minus_g2_wz_leg2 * t277,
-                -(0.0784 * t245), -(t289 * t294), -::overact::math::signed(t294, t289), -t294,
-                t299 * t302, ::overact::math::signed(t302, t299), t302, t312, t312,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t195,
+                t97 + 0.28 * (t175 + t195), g1_wz_leg2 * t205 + minus_g2_wz_leg2 * t207,
+                -(0.0784 * t175), -(t219 * t224), -::overact::math::signed(t224, t219), -t224,
+                t229 * t232, ::overact::math::signed(t232, t229), t232, t287, t287,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t324, t333 - 0.28 * (t312 + t324),
-                g1_wz_leg3 * t337 + minus_g2_wz_leg3 * t339, 0.0784 * t312, t351 * t356,
-                ::overact::math::signed(t356, t351), -t356, t361 * t364,
-                ::overact::math::signed(t364, t361), t364, t411, t411,
+                g1_wz_leg3, t307, t317 - 0.28 * (t287 + t307),
+                g1_wz_leg3 * t321 + minus_g2_wz_leg3 * t323, 0.0784 * t287, t335 * t340,
+                ::overact::math::signed(t340, t335), -t340, t345 * t348,
+                ::overact::math::signed(t348, t345), t348, t395, t395,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                t431, t333 - 0.28 * (t411 + t431), -(minus_g1_wz_leg4 * t441 + g2_wz_leg4 * t443),
-                0.0784 * t411, t455 * t460, ::overact::math::signed(t460, t455), t460, t465 * t468,
-                ::overact::math::signed(t468, t465), t468, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t165, 0.0,
+                t415, t317 - 0.28 * (t395 + t415), -(minus_g1_wz_leg4 * t425 + g2_wz_leg4 * t427),
+                0.0784 * t395, t439 * t444, ::overact::math::signed(t444, t439), t444, t449 * t452,
+                ::overact::math::signed(t452, t449), t452, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t94, 0.0,
             ],
         ])
     }

@@ -6487,7 +6487,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 974 operations (430 additions, 535 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 986 intermediates.
+    /// 974 operations (429 additions, 536 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 986 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6554,7 +6554,7 @@ impl Orthoglide {
         let t84 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
         let t89 = c_left_bar_along_x * t61 - 9.81 * s_left_bar_along_x;
         let t93 = t76 - minus_rate_dot_left_bar_along_x;
-        let t95 = t26 - t80;
+        let t95 = t74 * t74;
         let t96 = t95 + t25;
         let t99 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
         let t104 = s_left_bar_along_x * t61 + 9.81 * c_left_bar_along_x;

@@ -1221,7 +1221,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 379 operations (135 additions, 238 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 319 intermediates.
+    /// 376 operations (137 additions, 233 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 316 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1263,8 +1263,7 @@ impl Planar3Rrr {
         let g1_vy_leg1 = t23 * t18;
         let rate_1_leg1 = g1_vy_leg1 * t41 - minus_g1_vx_leg1 * t38;
         let t51 = rate_1_leg1 * rate_1_leg1;
-        let t52 = t10 - 0.08;
-        let t53 = 0.5 * t52;
+        let t53 = 0.5 * (t10 - 0.08);
         let rate_dot_1_leg1 = t18 * (t46 + t51 * t53);
         let t57 = minus_g1_vx_leg1 * rate_dot_1_leg1;
         let t58 = g1_vy_leg1 * rate_dot_1_leg1;
@@ -1272,11 +1271,11 @@ impl Planar3Rrr {
         let t62 = g1_wz_leg1 * rate_dot_1_leg1;
         let t73 = t15 * t34 + t22 * t28 + 0.04 * t51;
         let minus_rate_dot_2_leg1 = t18 * (t73 + t44 * t53);
+        let t77 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t78 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t5 * minus_g2_vx_leg1;
-        let t83 = 5.0 * t17;
-        let t85 = 2.5 * t52;
-        let t87 = t44 * t83 + minus_rate_dot_2_leg1 * t85;
-        let t91 = t51 * t83 + rate_dot_1_leg1 * t85;
+        let t82 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t93 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t100 = 5.0 * t46;
         let t102 = 5.0 * t73;
         let t115 = rate_1_leg1 + minus_rate_2_leg1;
@@ -1385,11 +1384,9 @@ impl Planar3Rrr {
         Ok([
             [
                 -t57, -t57, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1,
-                minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g1_vx_leg1 * t87 - minus_g2_vx_leg1 * t91,
-                minus_g2_vx_leg1 * t100 - minus_g1_vx_leg1 * t102, -(0.04 * t57),
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t115),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t77,
+                5.0 * t34 - 0.2 * (t77 - t57), minus_g2_vx_leg1 * t100 - minus_g1_vx_leg1 * t102,
+                -(0.04 * t57), -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t115),
                 ::overact::math::signed(minus_g2_vx_leg1, t121), -t204, -t204,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
@@ -1406,11 +1403,9 @@ impl Planar3Rrr {
             ],
             [
                 t58, t58, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t87 + minus_g2_vy_leg1 * t91),
-                g1_vy_leg1 * t102 + minus_g2_vy_leg1 * t100, 0.04 * t58,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t115),
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t78,
+                5.0 * t28 - 0.2 * (t58 + t78), g1_vy_leg1 * t102 + minus_g2_vy_leg1 * t100,
+                0.04 * t58, ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t115),
                 ::overact::math::signed(minus_g2_vy_leg1, t121), t205, t205,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
@@ -1429,8 +1424,8 @@ impl Planar3Rrr {
             ],
             [
                 t62, t62, g1_wz_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t91 - g1_wz_leg1 * t87,
+                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1, -t82,
+                -(0.5 * (t93 - 0.1 * acceleration[2]) + 0.2 * (t62 - t82)),
                 g1_wz_leg1 * t102 - g2_wz_leg1 * t100, 0.04 * t62,
                 -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t115),
                 ::overact::math::signed(1.0 - g2_wz_leg1, t121), -t209, -t209,
@@ -1446,8 +1441,7 @@ impl Planar3Rrr {
                 -(minus_g1_wz_leg3 * t354 + g2_wz_leg3 * t327), -(0.04 * t343),
                 ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t394),
                 ::overact::math::signed(1.0 - g2_wz_leg3, t400), acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t93, 0.0,
             ],
         ])
     }

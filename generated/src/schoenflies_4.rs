@@ -2830,7 +2830,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 962 operations (289 additions, 665 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 751 intermediates.
+    /// 962 operations (288 additions, 666 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 751 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2995,16 +2995,16 @@ impl Schoenflies4 {
         let t328 = 9.81 * c_arm_leg2;
         let t333 = 9.81 * s_arm_leg2;
         let gcross_vx_leg2 = minus_grod_vx_leg2 * (t283 * minus_garm_vx_leg2);
-        let t351 = 0.26 * s_cross_leg2;
-        let t353 = t290 * minus_rate_cross_leg2;
-        let t357 = 0.26 * rate_dot_arm_leg2;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t279 + c_armcross_leg2 * acceleration[2] + t351 * t293
-                - (t353 + t353) + c_cross_leg2 * t357);
-        let t361 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t348 = 0.26 * s_cross_leg2;
+        let t353 = 0.26 * rate_dot_arm_leg2;
+        let t356 = t348 * t293 + s_armcross_leg2 * t279
+            + c_armcross_leg2 * acceleration[2] + c_cross_leg2 * t353;
+        let t357 = t290 * minus_rate_cross_leg2;
+        let rate_dot_cross_leg2 = minus_grod_vx_leg2 * (t357 + t357 - t356);
+        let t361 = s_rod_leg2 * rate_dot_cross_leg2;
         let t362 = 1.7241379310344827 * t303;
         let t363 = minus_rate_rod_leg2 * t362;
-        let t365 = t363 - t361 + t363;
+        let t365 = t361 + t363 + t363;
         let t366 = s_rod_leg2 * t365;
         let t368 = t362 * t362;
         let t369 = t263 * t368;
@@ -3015,19 +3015,20 @@ impl Schoenflies4 {
         let minus_gcross_wz_leg2 = t273 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t276;
         let grod_wz_leg2 = minus_grod_vx_leg2 * t276;
         let t382 = grod_wz_leg2 * t369;
-        let t384 = minus_rate_dot_cross_leg2 + t366;
-        let t387 = c_rod_leg2 * t365 - t263 * t384;
-        let t389 = t263 * t369;
-        let t390 = t389 - t368;
+        let t384 = 1.7241379310344827 * t356;
+        let t385 = c_rod_leg2 * t384;
+        let t388 = c_rod_leg2 * t365 - t263 * t385;
+        let t390 = t263 * t369;
+        let t391 = t390 - t368;
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t315;
-        let t399 = t369 - minus_rate_dot_rod_leg2;
-        let t403 = s_rod_leg2 * t399 + c_rod_leg2 * (t298 - t389);
-        let t418 = 1.7241379310344827 * t313;
-        let t420 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t431 = c_rod_leg2 * t351;
-        let t434 = t351 * s_rod_leg2;
-        let t437 = t283 * (t262 * t384) + t431 * (t368 + t298) + t434 * t399;
-        let t439 = t357 - t328;
+        let t400 = t369 - minus_rate_dot_rod_leg2;
+        let t404 = s_rod_leg2 * t400 + c_rod_leg2 * (t298 - t390);
+        let t419 = 1.7241379310344827 * t313;
+        let t421 = 1.7241379310344827 * rate_dot_cross_leg2;
+        let t431 = c_rod_leg2 * t348;
+        let t434 = t348 * s_rod_leg2;
+        let t437 = t283 * t384 + t431 * (t368 + t298) + t434 * t400;
+        let t439 = t353 - t328;
         let t440 = 0.26 * t439;
         let t441 = minus_garm_vx_leg2 * t440;
         let t446 = t333 + 0.26 * t293;
@@ -3036,10 +3037,10 @@ impl Schoenflies4 {
         let t461 = s_cross_leg2 * t439 - c_cross_leg2 * t446;
         let t462 = 1.7241379310344827 * t461;
         let t463 = t276 * t462;
-        let t472 = t431 * (t369 + minus_rate_dot_rod_leg2) + t434 * (t389 + t298)
+        let t472 = t431 * (t369 + minus_rate_dot_rod_leg2) + t434 * (t390 + t298)
             - t283 * t365;
         let t474 = s_rod_leg2 * t449;
-        let t491 = t283 * t305 - t351 * minus_rate_dot_cross_leg2;
+        let t491 = t348 * rate_dot_cross_leg2 + t283 * t305;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
         let t516 = 1.0 / s_cross_leg3;
@@ -3220,9 +3221,9 @@ impl Schoenflies4 {
                 minus_garm_vx_leg2 * t328, -(minus_garm_vx_leg2 * t333), -t319,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t366 + t370, gcross_vx_leg2 * t387 - minus_grod_vx_leg2 * t390,
-                gcross_vx_leg2 * t403 + minus_grod_vx_leg2 * t361, -(gcross_vx_leg2 * t384 + t370),
-                -(gcross_vx_leg2 * t418 - t420), minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                gcross_vx_leg2 * t366 + t370, gcross_vx_leg2 * t388 - minus_grod_vx_leg2 * t391,
+                gcross_vx_leg2 * t404 - minus_grod_vx_leg2 * t361, -(gcross_vx_leg2 * t385 + t370),
+                -(gcross_vx_leg2 * t419 + t421), minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
                 minus_garm_vx_leg2 * t437 + 1.7241379310344827 * t441,
                 t462 - (minus_garm_vx_leg2 * t472 + gcross_vx_leg2 * t474),
                 gcross_vx_leg2 * t461 - minus_garm_vx_leg2 * t491, -t441, -t561,
@@ -3259,9 +3260,9 @@ impl Schoenflies4 {
                 garm_vy_leg1 * t240 - minus_gcross_vy_leg1 * t211, t200, t321,
                 -(garm_vy_leg2 * t328), garm_vy_leg2 * t333, t321, garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2), garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t366), -(minus_gcross_vy_leg2 * t387),
-                -(minus_gcross_vy_leg2 * t403), minus_gcross_vy_leg2 * t384,
-                minus_gcross_vy_leg2 * t418, 0.0,
+                -(minus_gcross_vy_leg2 * t366), -(minus_gcross_vy_leg2 * t388),
+                -(minus_gcross_vy_leg2 * t404), minus_gcross_vy_leg2 * t385,
+                minus_gcross_vy_leg2 * t419, 0.0,
                 -(garm_vy_leg2 * t437 + minus_gcross_vy_leg2 * t450),
                 garm_vy_leg2 * t472 + minus_gcross_vy_leg2 * t474,
                 garm_vy_leg2 * t491 - minus_gcross_vy_leg2 * t461, garm_vy_leg2 * t440, -t563,
@@ -3298,8 +3299,8 @@ impl Schoenflies4 {
                 -(minus_garm_vz_leg1 * t199), -t323, minus_garm_vz_leg2 * t328,
                 -(minus_garm_vz_leg2 * t333), -t323, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t366, gcross_vz_leg2 * t387, gcross_vz_leg2 * t403,
-                -(gcross_vz_leg2 * t384), -(gcross_vz_leg2 * t418), 0.0,
+                gcross_vz_leg2 * t366, gcross_vz_leg2 * t388, gcross_vz_leg2 * t404,
+                -(gcross_vz_leg2 * t385), -(gcross_vz_leg2 * t419), 0.0,
                 gcross_vz_leg2 * t450 + minus_garm_vz_leg2 * t437,
                 -(minus_garm_vz_leg2 * t472 + gcross_vz_leg2 * t474),
                 gcross_vz_leg2 * t461 - minus_garm_vz_leg2 * t491, -(minus_garm_vz_leg2 * t440),
@@ -3333,9 +3334,9 @@ impl Schoenflies4 {
                 -(garm_wz_leg2 * t328), garm_wz_leg2 * t333, t327, garm_wz_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2), garm_wz_leg2,
                 -(minus_gcross_wz_leg2 * t366 + t382),
-                grod_wz_leg2 * t390 - minus_gcross_wz_leg2 * t387,
-                -(grod_wz_leg2 * t361 + minus_gcross_wz_leg2 * t403),
-                t382 + minus_gcross_wz_leg2 * t384, minus_gcross_wz_leg2 * t418 - t276 * t420,
+                grod_wz_leg2 * t391 - minus_gcross_wz_leg2 * t388,
+                grod_wz_leg2 * t361 - minus_gcross_wz_leg2 * t404,
+                t382 + minus_gcross_wz_leg2 * t385, minus_gcross_wz_leg2 * t419 + t276 * t421,
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 -(garm_wz_leg2 * t437 + minus_gcross_wz_leg2 * t450 + t263 * t463),
                 garm_wz_leg2 * t472 + minus_gcross_wz_leg2 * t474 - t463,
@@ -6574,7 +6575,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 848 operations (257 additions, 583 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 669 intermediates.
+    /// 861 operations (264 additions, 589 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 682 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6781,122 +6782,125 @@ impl Schoenflies4 {
             * (s_armcross_leg2 * t115 + c_armcross_leg2 * acceleration[2] + t407 * t129
                 - t409 - t409 + c_cross_leg2 * t413);
         let t417 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t419 = minus_rate_rod_leg2 * (1.7241379310344827 * t139);
+        let t418 = 1.7241379310344827 * t139;
+        let t419 = minus_rate_rod_leg2 * t418;
         let t421 = t419 - t417 + t419;
         let t422 = s_rod_leg2 * t421;
-        let t425 = t141 * (s_rod_leg2 * s_rod_leg2);
-        let t426 = t141 - t425;
-        let t427 = t99 * t426;
-        let t428 = minus_grod_vx_leg2 * t427;
-        let t430 = t94 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t430;
-        let gcross_vz_leg2 = s_arm_leg2 * t430;
+        let t425 = t418 * (s_rod_leg2 * minus_rate_cross_leg2);
+        let t426 = minus_grod_vx_leg2 * t425;
+        let t428 = t94 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t428;
+        let gcross_vz_leg2 = s_arm_leg2 * t428;
         let minus_gcross_wz_leg2 = t109 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t112;
         let grod_wz_leg2 = minus_grod_vx_leg2 * t112;
-        let t440 = grod_wz_leg2 * t427;
-        let t442 = t174 * minus_grod_vy_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t442;
-        let t447 = 0.26 * s_cross_leg3;
-        let t449 = t187 * rate_cross_leg3;
-        let t453 = 0.26 * rate_dot_arm_leg3;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t207 - c_armcross_leg3 * acceleration[2]
-                - (t447 * t190 + t449 + t449) - c_cross_leg3 * t453);
-        let t457 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t459 = minus_rate_rod_leg3 * (1.7241379310344827 * t200);
-        let t461 = t457 - t459 - t459;
-        let t462 = s_rod_leg3 * t461;
+        let t438 = grod_wz_leg2 * t425;
+        let t440 = t174 * minus_grod_vy_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t440;
+        let t445 = 0.26 * s_cross_leg3;
+        let t447 = t187 * rate_cross_leg3;
+        let t451 = 0.26 * rate_dot_arm_leg3;
+        let t453 = s_armcross_leg3 * t207 - c_armcross_leg3 * acceleration[2]
+            - (t445 * t190 + t447 + t447) - c_cross_leg3 * t451;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t453;
+        let t455 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t457 = minus_rate_rod_leg3 * (1.7241379310344827 * t200);
+        let t459 = t455 - t457 - t457;
+        let t460 = s_rod_leg3 * t459;
         let gcross_vy_leg3 = minus_grod_vy_leg3 * (t177 * minus_garm_vy_leg3);
-        let t467 = s_rod_leg3 * t202;
-        let t468 = 1.7241379310344827 * t467;
-        let gcross_vz_leg3 = s_arm_leg3 * t442;
+        let t465 = s_rod_leg3 * t202;
+        let t466 = 1.7241379310344827 * t465;
+        let gcross_vz_leg3 = s_arm_leg3 * t440;
         let gcross_wz_leg3 = t31 * gcross_vx_leg3 - t36 * gcross_vy_leg3;
         let grod_wz_leg3 = t36 * minus_grod_vy_leg3;
-        let t477 = t192 * t468;
-        let t478 = grod_wz_leg3 * t477;
+        let t475 = t192 * t466;
+        let t476 = grod_wz_leg3 * t475;
         let minus_gcross_vx_leg4 = grod_vx_leg4 * (t237 * garm_vx_leg4);
-        let t483 = rate_rod_leg4 * (1.7241379310344827 * t264);
-        let t487 = 0.26 * s_cross_leg4;
-        let t489 = t239 * rate_cross_leg4;
-        let t493 = 0.26 * rate_dot_arm_leg4;
+        let t480 = 1.7241379310344827 * t264;
+        let t481 = rate_rod_leg4 * t480;
+        let t485 = 0.26 * s_cross_leg4;
+        let t487 = t239 * rate_cross_leg4;
+        let t491 = 0.26 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = grod_vx_leg4
             * (s_armcross_leg4 * t271 - c_armcross_leg4 * acceleration[2]
-                - (t487 * t254 - t489 - t489) - c_cross_leg4 * t493);
-        let t497 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t499 = t483 + t497 + t483;
-        let t500 = s_rod_leg4 * t499;
-        let t503 = t266 * (s_rod_leg4 * s_rod_leg4);
-        let t504 = t266 - t503;
-        let t505 = t235 * t504;
-        let t506 = grod_vx_leg4 * t505;
-        let t508 = t230 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t508;
-        let gcross_vz_leg4 = s_arm_leg4 * t508;
+                - (t485 * t254 - t487 - t487) - c_cross_leg4 * t491);
+        let t495 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t497 = t481 + t495 + t481;
+        let t498 = s_rod_leg4 * t497;
+        let t501 = t480 * (s_rod_leg4 * rate_cross_leg4);
+        let t502 = grod_vx_leg4 * t501;
+        let t504 = t230 * grod_vx_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t504;
+        let gcross_vz_leg4 = s_arm_leg4 * t504;
         let minus_gcross_wz_leg4 = t109 * gcross_vy_leg4 + t112 * minus_gcross_vx_leg4;
         let grod_wz_leg4 = t112 * grod_vx_leg4;
-        let t518 = grod_wz_leg4 * t505;
-        let t520 = t384 - minus_rate_dot_cross_leg1;
-        let t523 = t52 * t520 - c_rod_leg1 * t383;
-        let t525 = t52 * t399;
-        let t527 = t525 - (t67 - t525);
-        let t535 = minus_rate_dot_cross_leg2 + t422;
-        let t538 = c_rod_leg2 * t421 - t99 * t535;
-        let t540 = t425 - t426;
-        let t548 = rate_dot_cross_leg3 - t462;
-        let t551 = t185 * t548 + c_rod_leg3 * t461;
-        let t554 = t185 * t477;
-        let t556 = t554 - (t202 - t554);
-        let t563 = t503 - t504;
-        let t566 = rate_dot_cross_leg4 - t500;
-        let t568 = c_rod_leg4 * t499 + t235 * t566;
+        let t514 = grod_wz_leg4 * t501;
+        let t516 = s_rod_leg1 * t367;
+        let t519 = t516 + t384 - (minus_rate_dot_cross_leg1 + t516);
+        let t522 = t52 * t519 - c_rod_leg1 * t383;
+        let t524 = t52 * t399;
+        let t526 = t524 - (t67 - t524);
+        let t534 = s_rod_leg2 * t419;
+        let t537 = t534 - minus_rate_dot_cross_leg2 - t422 - t534;
+        let t540 = t99 * t537 + c_rod_leg2 * t421;
+        let t542 = t99 * t425;
+        let t544 = t542 - (t141 - t542);
+        let t556 = s_rod_leg3 * t457 + c_rod_leg3 * (1.7241379310344827 * (t453 + t447));
+        let t559 = t185 * t556 + c_rod_leg3 * t459;
+        let t562 = t185 * t475;
+        let t564 = t562 - (t202 - t562);
+        let t571 = t235 * t501;
+        let t573 = t571 - (t266 - t571);
+        let t576 = s_rod_leg4 * t481;
+        let t579 = rate_dot_cross_leg4 + t576 - t498 - t576;
+        let t581 = c_rod_leg4 * t497 + t235 * t579;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t79;
-        let t581 = s_rod_leg1 * (t399 + rate_dot_rod_leg1) + c_rod_leg1 * (t69 - t525);
+        let t594 = s_rod_leg1 * (t399 + rate_dot_rod_leg1) + c_rod_leg1 * (t69 - t524);
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t151;
-        let t595 = s_rod_leg2 * (t427 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t134 - t425);
+        let t608 = s_rod_leg2 * (t425 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t134 - t542);
         let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t215;
-        let t609 = s_rod_leg3 * (t477 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t195 - t554);
+        let t622 = s_rod_leg3 * (t475 - minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t195 - t562);
         let rate_dot_rod_leg4 = grod_vx_leg4 * t279;
-        let t624 = s_rod_leg4 * (t505 + rate_dot_rod_leg4) + c_rod_leg4 * (t259 - t503);
-        let t656 = 1.7241379310344827 * t77;
-        let t659 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t665 = 1.7241379310344827 * t149;
-        let t667 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t674 = 1.7241379310344827 * t213;
-        let t677 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t683 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t684 = 1.7241379310344827 * t277;
-        let t703 = t43 * t383 - t373 * (t656 - t389);
-        let t706 = t312 + 0.26 * t57;
-        let t708 = t368 - t292;
-        let t711 = s_rod_leg1 * (s_cross_leg1 * t706 + c_cross_leg1 * t708);
-        let t719 = s_cross_leg1 * t708 - c_cross_leg1 * t706;
-        let t720 = 1.7241379310344827 * t719;
-        let t730 = t413 - t297;
-        let t733 = t317 + 0.26 * t129;
-        let t735 = s_cross_leg2 * t730 - c_cross_leg2 * t733;
-        let t736 = 1.7241379310344827 * t735;
-        let t745 = t407 * (c_rod_leg2 * (t427 + minus_rate_dot_rod_leg2))
-            + t407 * s_rod_leg2 * (t425 + t134) - t119 * t421;
-        let t750 = s_rod_leg2 * (s_cross_leg2 * t733 + c_cross_leg2 * t730);
-        let t768 = t447 * (t674 + t467) - t177 * t461;
-        let t771 = t322 + 0.26 * t190;
-        let t773 = t453 - t302;
-        let t776 = s_rod_leg3 * (s_cross_leg3 * t771 + c_cross_leg3 * t773);
-        let t781 = s_cross_leg3 * t773 - c_cross_leg3 * t771;
-        let t782 = 1.7241379310344827 * t781;
-        let t803 = t487 * (c_rod_leg4 * (t505 - rate_dot_rod_leg4))
-            + t487 * s_rod_leg4 * (t503 + t259) - t237 * t499;
-        let t806 = t327 + 0.26 * t254;
-        let t808 = t493 - t307;
-        let t811 = s_rod_leg4 * (s_cross_leg4 * t806 + c_cross_leg4 * t808);
-        let t816 = s_cross_leg4 * t808 - c_cross_leg4 * t806;
-        let t817 = 1.7241379310344827 * t816;
-        let t832 = t43 * t67 - t373 * minus_rate_dot_cross_leg1;
-        let t848 = t119 * t141 - t407 * minus_rate_dot_cross_leg2;
-        let t863 = t447 * rate_dot_cross_leg3 + t177 * t202;
-        let t877 = t487 * rate_dot_cross_leg4 + t237 * t266;
+        let t637 = s_rod_leg4 * (t501 + rate_dot_rod_leg4) + c_rod_leg4 * (t259 - t571);
+        let t669 = 1.7241379310344827 * t77;
+        let t672 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t678 = 1.7241379310344827 * t149;
+        let t680 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t687 = 1.7241379310344827 * t213;
+        let t690 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t696 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t697 = 1.7241379310344827 * t277;
+        let t716 = t43 * t383 - t373 * (t669 - t389);
+        let t719 = t312 + 0.26 * t57;
+        let t721 = t368 - t292;
+        let t724 = s_rod_leg1 * (s_cross_leg1 * t719 + c_cross_leg1 * t721);
+        let t732 = s_cross_leg1 * t721 - c_cross_leg1 * t719;
+        let t733 = 1.7241379310344827 * t732;
+        let t743 = t413 - t297;
+        let t746 = t317 + 0.26 * t129;
+        let t748 = s_cross_leg2 * t743 - c_cross_leg2 * t746;
+        let t749 = 1.7241379310344827 * t748;
+        let t758 = t407 * (c_rod_leg2 * (t425 + minus_rate_dot_rod_leg2))
+            + t407 * s_rod_leg2 * (t542 + t134) - t119 * t421;
+        let t763 = s_rod_leg2 * (s_cross_leg2 * t746 + c_cross_leg2 * t743);
+        let t781 = t445 * (t687 + t465) - t177 * t459;
+        let t784 = t322 + 0.26 * t190;
+        let t786 = t451 - t302;
+        let t789 = s_rod_leg3 * (s_cross_leg3 * t784 + c_cross_leg3 * t786);
+        let t794 = s_cross_leg3 * t786 - c_cross_leg3 * t784;
+        let t795 = 1.7241379310344827 * t794;
+        let t816 = t485 * (c_rod_leg4 * (t501 - rate_dot_rod_leg4))
+            + t485 * s_rod_leg4 * (t571 + t259) - t237 * t497;
+        let t819 = t327 + 0.26 * t254;
+        let t821 = t491 - t307;
+        let t824 = s_rod_leg4 * (s_cross_leg4 * t819 + c_cross_leg4 * t821);
+        let t829 = s_cross_leg4 * t821 - c_cross_leg4 * t819;
+        let t830 = 1.7241379310344827 * t829;
+        let t845 = t43 * t67 - t373 * minus_rate_dot_cross_leg1;
+        let t861 = t119 * t141 - t407 * minus_rate_dot_cross_leg2;
+        let t876 = t445 * rate_dot_cross_leg3 + t177 * t202;
+        let t890 = t485 * rate_dot_cross_leg4 + t237 * t266;
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
@@ -6911,25 +6915,25 @@ impl Schoenflies4 {
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
                 -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t384,
-                gcross_vx_leg2 * t422 + t428, gcross_vx_leg3 * t462,
-                -(minus_gcross_vx_leg4 * t500 + t506), -(minus_gcross_vx_leg1 * t523),
-                gcross_vx_leg2 * t538 - minus_grod_vx_leg2 * t540, gcross_vx_leg3 * t551,
-                grod_vx_leg4 * t563 - minus_gcross_vx_leg4 * t568, -(minus_gcross_vx_leg1 * t581),
-                gcross_vx_leg2 * t595 + minus_grod_vx_leg2 * t417, gcross_vx_leg3 * t609,
-                grod_vx_leg4 * t497 - minus_gcross_vx_leg4 * t624, -(minus_gcross_vx_leg1 * t520),
-                -(gcross_vx_leg2 * t535 + t428), gcross_vx_leg3 * t548,
-                t506 - minus_gcross_vx_leg4 * t566, -(minus_gcross_vx_leg1 * t656),
-                -(gcross_vx_leg2 * t665 - t667), -(gcross_vx_leg3 * t674),
-                t683 - minus_gcross_vx_leg4 * t684, 0.0,
+                gcross_vx_leg2 * t422 + t426, gcross_vx_leg3 * t460,
+                -(minus_gcross_vx_leg4 * t498 + t502), -(minus_gcross_vx_leg1 * t522),
+                gcross_vx_leg2 * t540 - minus_grod_vx_leg2 * t544, gcross_vx_leg3 * t559,
+                grod_vx_leg4 * t573 - minus_gcross_vx_leg4 * t581, -(minus_gcross_vx_leg1 * t594),
+                gcross_vx_leg2 * t608 + minus_grod_vx_leg2 * t417, gcross_vx_leg3 * t622,
+                grod_vx_leg4 * t495 - minus_gcross_vx_leg4 * t637, -(minus_gcross_vx_leg1 * t519),
+                gcross_vx_leg2 * t537 - t426, gcross_vx_leg3 * t556,
+                t502 - minus_gcross_vx_leg4 * t579, -(minus_gcross_vx_leg1 * t669),
+                -(gcross_vx_leg2 * t678 - t680), -(gcross_vx_leg3 * t687),
+                t696 - minus_gcross_vx_leg4 * t697, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
-                garm_vx_leg1 * t703 + minus_gcross_vx_leg1 * t711,
-                t736 - (minus_garm_vx_leg2 * t745 + gcross_vx_leg2 * t750),
-                -(minus_garm_vx_leg3 * t768 + gcross_vx_leg3 * t776),
-                garm_vx_leg4 * t803 + minus_gcross_vx_leg4 * t811 - t817,
-                garm_vx_leg1 * t832 - minus_gcross_vx_leg1 * t719,
-                gcross_vx_leg2 * t735 - minus_garm_vx_leg2 * t848,
-                gcross_vx_leg3 * t781 - minus_garm_vx_leg3 * t863,
-                garm_vx_leg4 * t877 - minus_gcross_vx_leg4 * t816,
+                garm_vx_leg1 * t716 + minus_gcross_vx_leg1 * t724,
+                t749 - (minus_garm_vx_leg2 * t758 + gcross_vx_leg2 * t763),
+                -(minus_garm_vx_leg3 * t781 + gcross_vx_leg3 * t789),
+                garm_vx_leg4 * t816 + minus_gcross_vx_leg4 * t824 - t830,
+                garm_vx_leg1 * t845 - minus_gcross_vx_leg1 * t732,
+                gcross_vx_leg2 * t748 - minus_garm_vx_leg2 * t861,
+                gcross_vx_leg3 * t794 - minus_garm_vx_leg3 * t876,
+                garm_vx_leg4 * t890 - minus_gcross_vx_leg4 * t829,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1,
@@ -6946,24 +6950,24 @@ impl Schoenflies4 {
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), garm_vy_leg1,
                 garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
                 minus_gcross_vy_leg1 * t384 - t390, -(minus_gcross_vy_leg2 * t422),
-                gcross_vy_leg3 * t462 + t468, gcross_vy_leg4 * t500,
-                grod_vy_leg1 * t527 - minus_gcross_vy_leg1 * t523, -(minus_gcross_vy_leg2 * t538),
-                gcross_vy_leg3 * t551 - minus_grod_vy_leg3 * t556, gcross_vy_leg4 * t568,
-                -(minus_gcross_vy_leg1 * t581 + grod_vy_leg1 * t381),
-                -(minus_gcross_vy_leg2 * t595), gcross_vy_leg3 * t609 - minus_grod_vy_leg3 * t457,
-                gcross_vy_leg4 * t624, t390 - minus_gcross_vy_leg1 * t520,
-                minus_gcross_vy_leg2 * t535, gcross_vy_leg3 * t548 - t468, gcross_vy_leg4 * t566,
-                -(minus_gcross_vy_leg1 * t656 + t659), minus_gcross_vy_leg2 * t665,
-                -(gcross_vy_leg3 * t674 + t677), gcross_vy_leg4 * t684,
+                gcross_vy_leg3 * t460 + t466, gcross_vy_leg4 * t498,
+                grod_vy_leg1 * t526 - minus_gcross_vy_leg1 * t522, -(minus_gcross_vy_leg2 * t540),
+                gcross_vy_leg3 * t559 - minus_grod_vy_leg3 * t564, gcross_vy_leg4 * t581,
+                -(minus_gcross_vy_leg1 * t594 + grod_vy_leg1 * t381),
+                -(minus_gcross_vy_leg2 * t608), gcross_vy_leg3 * t622 - minus_grod_vy_leg3 * t455,
+                gcross_vy_leg4 * t637, t390 - minus_gcross_vy_leg1 * t519,
+                -(minus_gcross_vy_leg2 * t537), gcross_vy_leg3 * t556 - t466, gcross_vy_leg4 * t579,
+                -(minus_gcross_vy_leg1 * t669 + t672), minus_gcross_vy_leg2 * t678,
+                -(gcross_vy_leg3 * t687 + t690), gcross_vy_leg4 * t697,
                 grod_vy_leg1 * rate_dot_rod_leg1, 0.0, minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                0.0, garm_vy_leg1 * t703 + minus_gcross_vy_leg1 * t711 - t720,
-                garm_vy_leg2 * t745 + minus_gcross_vy_leg2 * t750,
-                t782 - (minus_garm_vy_leg3 * t768 + gcross_vy_leg3 * t776),
-                -(minus_garm_vy_leg4 * t803 + gcross_vy_leg4 * t811),
-                garm_vy_leg1 * t832 - minus_gcross_vy_leg1 * t719,
-                garm_vy_leg2 * t848 - minus_gcross_vy_leg2 * t735,
-                gcross_vy_leg3 * t781 - minus_garm_vy_leg3 * t863,
-                gcross_vy_leg4 * t816 - minus_garm_vy_leg4 * t877,
+                0.0, garm_vy_leg1 * t716 + minus_gcross_vy_leg1 * t724 - t733,
+                garm_vy_leg2 * t758 + minus_gcross_vy_leg2 * t763,
+                t795 - (minus_garm_vy_leg3 * t781 + gcross_vy_leg3 * t789),
+                -(minus_garm_vy_leg4 * t816 + gcross_vy_leg4 * t824),
+                garm_vy_leg1 * t845 - minus_gcross_vy_leg1 * t732,
+                garm_vy_leg2 * t861 - minus_gcross_vy_leg2 * t748,
+                gcross_vy_leg3 * t794 - minus_garm_vy_leg3 * t876,
+                gcross_vy_leg4 * t829 - minus_garm_vy_leg4 * t890,
             ],
             [
                 0.0, 0.0, 0.0, acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
@@ -6980,21 +6984,21 @@ impl Schoenflies4 {
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                -(minus_minus_gcross_vz_leg1 * t384), gcross_vz_leg2 * t422, gcross_vz_leg3 * t462,
-                gcross_vz_leg4 * t500, minus_minus_gcross_vz_leg1 * t523, gcross_vz_leg2 * t538,
-                gcross_vz_leg3 * t551, gcross_vz_leg4 * t568, minus_minus_gcross_vz_leg1 * t581,
-                gcross_vz_leg2 * t595, gcross_vz_leg3 * t609, gcross_vz_leg4 * t624,
-                minus_minus_gcross_vz_leg1 * t520, -(gcross_vz_leg2 * t535), gcross_vz_leg3 * t548,
-                gcross_vz_leg4 * t566, minus_minus_gcross_vz_leg1 * t656, -(gcross_vz_leg2 * t665),
-                -(gcross_vz_leg3 * t674), gcross_vz_leg4 * t684, 0.0, 0.0, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t711 + minus_garm_vz_leg1 * t703),
-                -(minus_garm_vz_leg2 * t745 + gcross_vz_leg2 * t750),
-                -(minus_garm_vz_leg3 * t768 + gcross_vz_leg3 * t776),
-                -(minus_garm_vz_leg4 * t803 + gcross_vz_leg4 * t811),
-                -(minus_garm_vz_leg1 * t832 - minus_minus_gcross_vz_leg1 * t719),
-                gcross_vz_leg2 * t735 - minus_garm_vz_leg2 * t848,
-                gcross_vz_leg3 * t781 - minus_garm_vz_leg3 * t863,
-                gcross_vz_leg4 * t816 - minus_garm_vz_leg4 * t877,
+                -(minus_minus_gcross_vz_leg1 * t384), gcross_vz_leg2 * t422, gcross_vz_leg3 * t460,
+                gcross_vz_leg4 * t498, minus_minus_gcross_vz_leg1 * t522, gcross_vz_leg2 * t540,
+                gcross_vz_leg3 * t559, gcross_vz_leg4 * t581, minus_minus_gcross_vz_leg1 * t594,
+                gcross_vz_leg2 * t608, gcross_vz_leg3 * t622, gcross_vz_leg4 * t637,
+                minus_minus_gcross_vz_leg1 * t519, gcross_vz_leg2 * t537, gcross_vz_leg3 * t556,
+                gcross_vz_leg4 * t579, minus_minus_gcross_vz_leg1 * t669, -(gcross_vz_leg2 * t678),
+                -(gcross_vz_leg3 * t687), gcross_vz_leg4 * t697, 0.0, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t724 + minus_garm_vz_leg1 * t716),
+                -(minus_garm_vz_leg2 * t758 + gcross_vz_leg2 * t763),
+                -(minus_garm_vz_leg3 * t781 + gcross_vz_leg3 * t789),
+                -(minus_garm_vz_leg4 * t816 + gcross_vz_leg4 * t824),
+                -(minus_garm_vz_leg1 * t845 - minus_minus_gcross_vz_leg1 * t732),
+                gcross_vz_leg2 * t748 - minus_garm_vz_leg2 * t861,
+                gcross_vz_leg3 * t794 - minus_garm_vz_leg3 * t876,
+                gcross_vz_leg4 * t829 - minus_garm_vz_leg4 * t890,
             ],
             [
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -7010,29 +7014,29 @@ impl Schoenflies4 {
                 -::overact::math::signed(garm_wz_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg1, garm_wz_leg2,
                 garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t384 + t400),
-                -(minus_gcross_wz_leg2 * t422 + t440), gcross_wz_leg3 * t462 - t478,
-                -(minus_gcross_wz_leg4 * t500 + t518), gcross_wz_leg1 * t523 + grod_wz_leg1 * t527,
-                grod_wz_leg2 * t540 - minus_gcross_wz_leg2 * t538,
-                gcross_wz_leg3 * t551 + grod_wz_leg3 * t556,
-                grod_wz_leg4 * t563 - minus_gcross_wz_leg4 * t568,
-                gcross_wz_leg1 * t581 - grod_wz_leg1 * t381,
-                -(grod_wz_leg2 * t417 + minus_gcross_wz_leg2 * t595),
-                gcross_wz_leg3 * t609 + grod_wz_leg3 * t457,
-                grod_wz_leg4 * t497 - minus_gcross_wz_leg4 * t624, gcross_wz_leg1 * t520 + t400,
-                t440 + minus_gcross_wz_leg2 * t535, gcross_wz_leg3 * t548 + t478,
-                t518 - minus_gcross_wz_leg4 * t566, gcross_wz_leg1 * t656 - t36 * t659,
-                minus_gcross_wz_leg2 * t665 - t112 * t667, t36 * t677 - gcross_wz_leg3 * t674,
-                t112 * t683 - minus_gcross_wz_leg4 * t684, grod_wz_leg1 * rate_dot_rod_leg1,
+                -(minus_gcross_wz_leg2 * t422 + t438), gcross_wz_leg3 * t460 - t476,
+                -(minus_gcross_wz_leg4 * t498 + t514), gcross_wz_leg1 * t522 + grod_wz_leg1 * t526,
+                grod_wz_leg2 * t544 - minus_gcross_wz_leg2 * t540,
+                gcross_wz_leg3 * t559 + grod_wz_leg3 * t564,
+                grod_wz_leg4 * t573 - minus_gcross_wz_leg4 * t581,
+                gcross_wz_leg1 * t594 - grod_wz_leg1 * t381,
+                -(grod_wz_leg2 * t417 + minus_gcross_wz_leg2 * t608),
+                gcross_wz_leg3 * t622 + grod_wz_leg3 * t455,
+                grod_wz_leg4 * t495 - minus_gcross_wz_leg4 * t637, gcross_wz_leg1 * t519 + t400,
+                t438 - minus_gcross_wz_leg2 * t537, gcross_wz_leg3 * t556 + t476,
+                t514 - minus_gcross_wz_leg4 * t579, gcross_wz_leg1 * t669 - t36 * t672,
+                minus_gcross_wz_leg2 * t678 - t112 * t680, t36 * t690 - gcross_wz_leg3 * t687,
+                t112 * t696 - minus_gcross_wz_leg4 * t697, grod_wz_leg1 * rate_dot_rod_leg1,
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
-                garm_wz_leg1 * t703 - gcross_wz_leg1 * t711 - t36 * t720,
-                garm_wz_leg2 * t745 + minus_gcross_wz_leg2 * t750 - t112 * t736,
-                garm_wz_leg3 * t768 - gcross_wz_leg3 * t776 - t36 * t782,
-                garm_wz_leg4 * t803 + minus_gcross_wz_leg4 * t811 - t112 * t817,
-                garm_wz_leg1 * t832 + gcross_wz_leg1 * t719,
-                garm_wz_leg2 * t848 - minus_gcross_wz_leg2 * t735,
-                garm_wz_leg3 * t863 + gcross_wz_leg3 * t781,
-                garm_wz_leg4 * t877 - minus_gcross_wz_leg4 * t816,
+                garm_wz_leg1 * t716 - gcross_wz_leg1 * t724 - t36 * t733,
+                garm_wz_leg2 * t758 + minus_gcross_wz_leg2 * t763 - t112 * t749,
+                garm_wz_leg3 * t781 - gcross_wz_leg3 * t789 - t36 * t795,
+                garm_wz_leg4 * t816 + minus_gcross_wz_leg4 * t824 - t112 * t830,
+                garm_wz_leg1 * t845 + gcross_wz_leg1 * t732,
+                garm_wz_leg2 * t861 - minus_gcross_wz_leg2 * t748,
+                garm_wz_leg3 * t876 + gcross_wz_leg3 * t794,
+                garm_wz_leg4 * t890 - minus_gcross_wz_leg4 * t829,
             ],
         ])
     }
@@ -9568,7 +9572,7 @@ impl Schoenflies4 {
     /// Output: 4 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 550 operations (205 additions, 321 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 552 intermediates.
+    /// 544 operations (203 additions, 317 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 546 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9604,281 +9608,277 @@ impl Schoenflies4 {
         let t25 = 0.3016 * c_rod_leg1;
         let s_cross_leg1 = t21 / t25;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
-        let t27 = 1.0 / s_cross_leg1;
-        let t28 = 3.8461538461538463 * t27;
+        let t27 = 3.8461538461538463 / s_cross_leg1;
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t30 = t14 * grod_vy_leg1;
-        let garm_vy_leg1 = t28 * t30;
-        let t33 = 1.0 / t10;
-        let t34 = 0.52 * t6;
-        let t36 = 0.52 * pose[2];
-        let c_arm_leg1 = t33 * (t34 * t18 - t36 * t21);
+        let t29 = t14 * grod_vy_leg1;
+        let garm_vy_leg1 = t27 * t29;
+        let t32 = 1.0 / t10;
+        let t33 = 0.52 * t6;
+        let t35 = 0.52 * pose[2];
+        let c_arm_leg1 = t32 * (t33 * t18 - t35 * t21);
         let c_cross_leg1 = (t17 + -0.0676) / t25;
-        let minus_s_arm_leg1 = t33 * (t36 * t18 + t34 * t21);
+        let minus_s_arm_leg1 = t32 * (t35 * t18 + t33 * t21);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t28;
+        let garm_vx_leg1 = c_armcross_leg1 * t27;
         let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
-        let t53 = t12 - t11;
-        let t54 = t3 + t2;
-        let t56 = pose[1] + t54 - 0.24;
-        let t58 = t56 * t56 + t8;
-        let t59 = 0.2704 * t58;
-        let t60 = 1.0 / t59;
-        let t61 = 0.52 * t56;
-        let t62 = pose[0] + t53;
-        let t63 = t62 * t62;
-        let t65 = t58 + t63 - 0.3364;
-        let t66 = t65 + 0.0676;
-        let t69 = t59 - t66 * t66;
-        ::overact::guard::reach(t69, "leg2")?;
-        let t70 = ::overact::math::sqrt(t69);
-        let c_arm_leg2 = t60 * (t61 * t66 - t36 * t70);
-        let t76 = 1.0 - 2.972651605231867 * t63;
-        ::overact::guard::reach(t76, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t76);
+        let t52 = t12 - t11;
+        let t53 = t3 + t2;
+        let t55 = pose[1] + t53 - 0.24;
+        let t57 = t55 * t55 + t8;
+        let t58 = 0.2704 * t57;
+        let t59 = 1.0 / t58;
+        let t60 = 0.52 * t55;
+        let t61 = pose[0] + t52;
+        let t62 = t61 * t61;
+        let t64 = t57 + t62 - 0.3364;
+        let t65 = t64 + 0.0676;
+        let t68 = t58 - t65 * t65;
+        ::overact::guard::reach(t68, "leg2")?;
+        let t69 = ::overact::math::sqrt(t68);
+        let c_arm_leg2 = t59 * (t60 * t65 - t35 * t69);
+        let t75 = 1.0 - 2.972651605231867 * t62;
+        ::overact::guard::reach(t75, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t75);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t78 = 0.3016 * c_rod_leg2;
-        let c_cross_leg2 = (-0.0676 + t65) / t78;
-        let minus_s_arm_leg2 = t60 * (t36 * t66 + t61 * t70);
-        let s_cross_leg2 = t70 / t78;
+        let t77 = 0.3016 * c_rod_leg2;
+        let c_cross_leg2 = (-0.0676 + t64) / t77;
+        let minus_s_arm_leg2 = t59 * (t35 * t65 + t60 * t69);
+        let s_cross_leg2 = t69 / t77;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t88 = 1.0 / s_cross_leg2;
-        let t89 = 3.8461538461538463 * t88;
-        let garm_vy_leg2 = c_armcross_leg2 * t89;
+        let t87 = 1.0 / s_cross_leg2;
+        let t88 = 3.8461538461538463 * t87;
+        let garm_vy_leg2 = c_armcross_leg2 * t88;
         let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let t93 = t62 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t89 * t93;
-        let garm_wz_leg2 = t53 * garm_vy_leg2 - t54 * garm_vx_leg2;
-        let t100 = pose[0] - t4 + 0.24;
-        let t102 = t100 * t100 + t8;
-        let t103 = 0.2704 * t102;
-        let t104 = 1.0 / t103;
-        let t105 = 0.52 * t100;
-        let t106 = pose[1] - t13;
-        let t107 = t106 * t106;
-        let t109 = t102 + t107 - 0.3364;
-        let t110 = t109 + 0.0676;
-        let t113 = t103 - t110 * t110;
-        ::overact::guard::reach(t113, "leg3")?;
-        let t114 = ::overact::math::sqrt(t113);
-        let minus_c_arm_leg3 = t104 * (t105 * t110 + t36 * t114);
-        let t120 = 1.0 - 2.972651605231867 * t107;
-        ::overact::guard::reach(t120, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t120);
+        let t92 = t61 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t88 * t92;
+        let garm_wz_leg2 = t52 * garm_vy_leg2 - t53 * garm_vx_leg2;
+        let t99 = pose[0] - t4 + 0.24;
+        let t101 = t99 * t99 + t8;
+        let t102 = 0.2704 * t101;
+        let t103 = 1.0 / t102;
+        let t104 = 0.52 * t99;
+        let t105 = pose[1] - t13;
+        let t106 = t105 * t105;
+        let t108 = t101 + t106 - 0.3364;
+        let t109 = t108 + 0.0676;
+        let t112 = t102 - t109 * t109;
+        ::overact::guard::reach(t112, "leg3")?;
+        let t113 = ::overact::math::sqrt(t112);
+        let minus_c_arm_leg3 = t103 * (t104 * t109 + t35 * t113);
+        let t119 = 1.0 - 2.972651605231867 * t106;
+        ::overact::guard::reach(t119, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t119);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t122 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t109) / t122;
-        let s_arm_leg3 = t104 * (t105 * t114 - t36 * t110);
-        let s_cross_leg3 = t114 / t122;
+        let t121 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t108) / t121;
+        let s_arm_leg3 = t103 * (t104 * t113 - t35 * t109);
+        let s_cross_leg3 = t113 / t121;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t132 = 1.0 / s_cross_leg3;
-        let t133 = 3.8461538461538463 * t132;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t133;
+        let t131 = 1.0 / s_cross_leg3;
+        let t132 = 3.8461538461538463 * t131;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t132;
         let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t137 = t106 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t133 * t137;
+        let t136 = t105 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t132 * t136;
         let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let t144 = pose[1] - t54 + 0.24;
-        let t146 = t144 * t144 + t8;
-        let t147 = 0.2704 * t146;
-        let t148 = pose[0] - t53;
-        let t149 = t148 * t148;
-        let t151 = t146 + t149 - 0.3364;
-        let t152 = t151 + 0.0676;
-        let t154 = t147 - t152 * t152;
-        ::overact::guard::reach(t154, "leg4")?;
-        let t155 = ::overact::math::sqrt(t154);
-        let t157 = 1.0 - 2.972651605231867 * t149;
-        ::overact::guard::reach(t157, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t157);
+        let t143 = pose[1] - t53 + 0.24;
+        let t145 = t143 * t143 + t8;
+        let t146 = 0.2704 * t145;
+        let t147 = pose[0] - t52;
+        let t148 = t147 * t147;
+        let t150 = t145 + t148 - 0.3364;
+        let t151 = t150 + 0.0676;
+        let t153 = t146 - t151 * t151;
+        ::overact::guard::reach(t153, "leg4")?;
+        let t154 = ::overact::math::sqrt(t153);
+        let t156 = 1.0 - 2.972651605231867 * t148;
+        ::overact::guard::reach(t156, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t156);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t159 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t155 / t159;
+        let t158 = 0.3016 * c_rod_leg4;
+        let s_cross_leg4 = t154 / t158;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t161 = 1.0 / s_cross_leg4;
-        let t162 = 3.8461538461538463 * t161;
+        let t160 = 1.0 / s_cross_leg4;
+        let t161 = 3.8461538461538463 * t160;
         let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t164 = t148 * grod_vx_leg4;
-        let garm_vx_leg4 = t162 * t164;
-        let t167 = 1.0 / t147;
-        let t168 = 0.52 * t144;
-        let minus_c_arm_leg4 = t167 * (t168 * t152 + t36 * t155);
-        let c_cross_leg4 = (-0.0676 + t151) / t159;
-        let s_arm_leg4 = t167 * (t168 * t155 - t36 * t152);
+        let t163 = t147 * grod_vx_leg4;
+        let garm_vx_leg4 = t161 * t163;
+        let t166 = 1.0 / t146;
+        let t167 = 0.52 * t143;
+        let minus_c_arm_leg4 = t166 * (t167 * t151 + t35 * t154);
+        let c_cross_leg4 = (-0.0676 + t150) / t158;
+        let s_arm_leg4 = t166 * (t167 * t154 - t35 * t151);
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t162;
-        let garm_wz_leg4 = t54 * garm_vx_leg4 - t53 * garm_vy_leg4;
-        let t193 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t161;
+        let garm_wz_leg4 = t53 * garm_vx_leg4 - t52 * garm_vy_leg4;
+        let t192 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
             + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t200 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t199 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t200, 19.507470815645043, "actuators")?;
-        ::overact::guard::platform(t200, 19.507470815645043, "actuators")?;
-        let t201 = 1.0 / t200;
-        let t202 = t193 * t201;
-        let t218 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t199, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t199, 19.507470815645043, "actuators")?;
+        let t200 = 1.0 / t199;
+        let t201 = t192 * t200;
+        let t217 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t220 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
-            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t218 * t202;
-        let t228 = t218 * t201;
-        let t230 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t218 * t228;
-        ::overact::guard::platform(t230, 16.505615550045768, "actuators")?;
-        ::overact::guard::platform(t230, 16.505615550045768, "actuators")?;
-        let t231 = 1.0 / t230;
-        let t232 = t220 * t231;
-        let t234 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t193 * t202
-            - t220 * t232;
+        let t219 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t217 * t201;
+        let t227 = t217 * t200;
+        let t229 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t217 * t227;
+        ::overact::guard::platform(t229, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t229, 16.505615550045768, "actuators")?;
+        let t230 = 1.0 / t229;
+        let t231 = t219 * t230;
+        let t233 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t192 * t201
+            - t219 * t231;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t28;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t27;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t89;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t88;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t133;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t132;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t162;
-        let t257 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t161;
+        let t256 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t267 = t257 * t201;
-        let t276 = t218 * t267
+        let t266 = t256 * t200;
+        let t275 = t217 * t266
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t278 = t257 * t202
+        let t277 = t256 * t201
             - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
                 + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
-            - t276 * t232;
-        let t288 = t276 * t231;
-        let t290 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            - t275 * t231;
+        let t287 = t275 * t230;
+        let t289 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t257 * t267 - t276 * t288;
-        ::overact::guard::platform(t290, 31.11733818900117, "actuators")?;
-        ::overact::guard::platform(t290, 31.11733818900117, "actuators")?;
-        let t291 = 1.0 / t290;
-        let t292 = t278 * t291;
-        let t294 = t234 - t278 * t292;
-        ::overact::guard::platform(t294, 0.35106548211906174, "actuators")?;
-        ::overact::guard::platform(t294, 0.35106548211906174, "actuators")?;
-        let t295 = 1.0 / t294;
-        let t296 = c_cross_leg1 * t27;
-        let t303 = garm_vx_leg1 * actuator_velocities[0]
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t256 * t266 - t275 * t287;
+        ::overact::guard::platform(t289, 31.11733818900117, "actuators")?;
+        ::overact::guard::platform(t289, 31.11733818900117, "actuators")?;
+        let t290 = 1.0 / t289;
+        let t291 = t277 * t290;
+        let t293 = t233 - t277 * t291;
+        ::overact::guard::platform(t293, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t293, 0.35106548211906174, "actuators")?;
+        let t294 = 1.0 / t293;
+        let t295 = 0.26 * c_cross_leg1;
+        let t306 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t313 = garm_vy_leg1 * actuator_velocities[0]
+        let t316 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t303 * t228;
-        let t325 = t303 * t267
+            + garm_vy_leg4 * actuator_velocities[3] - t306 * t227;
+        let t328 = t306 * t266
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t288 * t313;
-        let t337 = garm_wz_leg1 * actuator_velocities[0]
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t287 * t316;
+        let t340 = garm_wz_leg1 * actuator_velocities[0]
             + garm_wz_leg2 * actuator_velocities[1]
             + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t303 * t202 - t232 * t313;
-        let t340 = t295 * (t337 - t292 * t325);
-        let t342 = t291 * t325 - t292 * t340;
-        let t346 = t231 * t313 - t288 * t342 - t232 * t340;
-        let t352 = t303 * t201 - t228 * t346 + t267 * t342 - t202 * t340;
-        let t353 = t13 * t340;
-        let t354 = t352 - t353;
-        let t360 = t4 * t340;
-        let t361 = t346 + t360;
-        let t363 = t296 * (c_armcross_leg1 * t354 - s_armcross_leg1 * t342)
-            + t30 * t296 * t361;
+            + garm_wz_leg4 * actuator_velocities[3] - t306 * t201 - t231 * t316;
+        let t343 = t294 * (t340 - t291 * t328);
+        let t345 = t290 * t328 - t291 * t343;
+        let t349 = t230 * t316 - t287 * t345 - t231 * t343;
+        let t355 = t306 * t200 - t227 * t349 + t266 * t345 - t201 * t343;
+        let t356 = t13 * t343;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (t363 + s_armcross_leg1 * t354 + c_armcross_leg1 * t342);
-        let rate_rod_leg1 = grod_vy_leg1 * t361;
-        let t373 = rate_rod_leg1 * rate_rod_leg1;
-        let t377 = t340 * t360;
-        let t380 = t340 * t353;
-        let t384 = actuator_velocities[0] * t363
-            + 0.58 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t373)
-            - c_armcross_leg1 * t377 - t30 * (t380 - t14 * t373);
-        let rate_dot_arm_leg1 = t28 * t384;
-        let t386 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t388 = 0.26 * c_cross_leg2;
-        let t392 = t54 * t340;
-        let t393 = t352 - t392;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t393;
-        let t395 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t397 = t53 * t340;
-        let t398 = t346 + t397;
-        let t409 = c_cross_leg2 * t88 * (c_armcross_leg2 * t398 - s_armcross_leg2 * t342)
-            + s_armcross_leg2 * t398 + c_armcross_leg2 * t342
-            + t388 * garm_vx_leg2 * t393;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t409;
-        let t415 = t340 * t392;
-        let t418 = t340 * t397;
-        let t422 = t388 * (actuator_velocities[1] * actuator_velocities[1])
-            + 0.58 * c_rod_leg2 * (t395 + minus_rate_cross_leg2 * minus_rate_cross_leg2)
-            - c_armcross_leg2 * t415 - t93 * (t418 - t62 * t395);
-        let rate_dot_arm_leg2 = t89 * t422;
-        let t424 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t428 = 0.26 * c_cross_leg3;
-        let t432 = t346 - t360;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t432;
-        let t434 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t435 = t352 + t353;
-        let t447 = s_armcross_leg3 * t435 + minus_c_armcross_leg3 * t342
-            - c_cross_leg3 * t132
-                * (minus_c_armcross_leg3 * t435 - s_armcross_leg3 * t342)
-            - t428 * garm_vy_leg3 * t432;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t447;
-        let t457 = minus_c_armcross_leg3 * t377
-            + t428 * (actuator_velocities[2] * actuator_velocities[2])
-            + 0.58 * c_rod_leg3 * (t434 + rate_cross_leg3 * rate_cross_leg3)
-            + t137 * (t380 + t106 * t434);
-        let rate_dot_arm_leg3 = t133 * t457;
-        let t459 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t463 = 0.26 * c_cross_leg4;
-        let t467 = t352 + t392;
-        let rate_rod_leg4 = grod_vx_leg4 * t467;
-        let t469 = rate_rod_leg4 * rate_rod_leg4;
-        let t470 = t346 - t397;
-        let t482 = s_armcross_leg4 * t470 + minus_c_armcross_leg4 * t342
-            - c_cross_leg4 * t161
-                * (minus_c_armcross_leg4 * t470 - s_armcross_leg4 * t342)
-            - t463 * garm_vx_leg4 * t467;
-        let rate_cross_leg4 = grod_vx_leg4 * t482;
-        let t492 = minus_c_armcross_leg4 * t415
-            + t463 * (actuator_velocities[3] * actuator_velocities[3])
-            + 0.58 * c_rod_leg4 * (t469 + rate_cross_leg4 * rate_cross_leg4)
-            + t164 * (t418 + t148 * t469);
-        let rate_dot_arm_leg4 = t162 * t492;
-        let t494 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t503 = garm_vx_leg1 * t386 + garm_vx_leg2 * t424 + garm_vx_leg3 * t459
-            + garm_vx_leg4 * t494;
-        let t514 = garm_vy_leg1 * t386 + garm_vy_leg2 * t424 + garm_vy_leg3 * t459
-            + garm_vy_leg4 * t494 - t228 * t503;
-        let t516 = garm_wz_leg1 * t386 + garm_wz_leg2 * t424 + garm_wz_leg3 * t459
-            + garm_wz_leg4 * t494 - t202 * t503 - t232 * t514;
-        let t527 = t267 * t503
-            - (minus_garm_vz_leg1 * t386 + minus_garm_vz_leg2 * t424
-                + minus_garm_vz_leg3 * t459 + minus_garm_vz_leg4 * t494) - t288 * t514;
-        let t530 = t295 * (t516 - t292 * t527);
-        let t531 = t340 * t340;
-        let t534 = c_phi * t531 + s_phi * t530;
-        let t537 = s_phi * t531 - c_phi * t530;
-        let t541 = t291 * t527 - t292 * t530;
-        let t545 = t231 * t514 - t288 * t541 - t232 * t530;
-        let t553 = t201 * t503 - t228 * t545 + t267 * t541 - t202 * t530;
+            * (actuator_velocities[0] * t295 + s_armcross_leg1 * (t355 - t356)
+                + c_armcross_leg1 * t345);
+        let t364 = t4 * t343;
+        let rate_rod_leg1 = grod_vy_leg1 * (t349 + t364);
+        let t367 = rate_rod_leg1 * rate_rod_leg1;
+        let t371 = t343 * t364;
+        let t374 = t343 * t356;
+        let t378 = t295 * (actuator_velocities[0] * actuator_velocities[0])
+            + 0.58 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t367)
+            - c_armcross_leg1 * t371 - t29 * (t374 - t14 * t367);
+        let rate_dot_arm_leg1 = t27 * t378;
+        let t380 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t382 = 0.26 * c_cross_leg2;
+        let t386 = t53 * t343;
+        let t387 = t355 - t386;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t387;
+        let t389 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t391 = t52 * t343;
+        let t392 = t349 + t391;
+        let t403 = c_cross_leg2 * t87 * (c_armcross_leg2 * t392 - s_armcross_leg2 * t345)
+            + s_armcross_leg2 * t392 + c_armcross_leg2 * t345
+            + t382 * garm_vx_leg2 * t387;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t403;
+        let t409 = t343 * t386;
+        let t412 = t343 * t391;
+        let t416 = t382 * (actuator_velocities[1] * actuator_velocities[1])
+            + 0.58 * c_rod_leg2 * (t389 + minus_rate_cross_leg2 * minus_rate_cross_leg2)
+            - c_armcross_leg2 * t409 - t92 * (t412 - t61 * t389);
+        let rate_dot_arm_leg2 = t88 * t416;
+        let t418 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t422 = 0.26 * c_cross_leg3;
+        let t426 = t349 - t364;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t426;
+        let t428 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t429 = t355 + t356;
+        let t441 = s_armcross_leg3 * t429 + minus_c_armcross_leg3 * t345
+            - c_cross_leg3 * t131
+                * (minus_c_armcross_leg3 * t429 - s_armcross_leg3 * t345)
+            - t422 * garm_vy_leg3 * t426;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t441;
+        let t451 = minus_c_armcross_leg3 * t371
+            + t422 * (actuator_velocities[2] * actuator_velocities[2])
+            + 0.58 * c_rod_leg3 * (t428 + rate_cross_leg3 * rate_cross_leg3)
+            + t136 * (t374 + t105 * t428);
+        let rate_dot_arm_leg3 = t132 * t451;
+        let t453 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t457 = 0.26 * c_cross_leg4;
+        let t461 = t355 + t386;
+        let rate_rod_leg4 = grod_vx_leg4 * t461;
+        let t463 = rate_rod_leg4 * rate_rod_leg4;
+        let t464 = t349 - t391;
+        let t476 = s_armcross_leg4 * t464 + minus_c_armcross_leg4 * t345
+            - c_cross_leg4 * t160
+                * (minus_c_armcross_leg4 * t464 - s_armcross_leg4 * t345)
+            - t457 * garm_vx_leg4 * t461;
+        let rate_cross_leg4 = grod_vx_leg4 * t476;
+        let t486 = minus_c_armcross_leg4 * t409
+            + t457 * (actuator_velocities[3] * actuator_velocities[3])
+            + 0.58 * c_rod_leg4 * (t463 + rate_cross_leg4 * rate_cross_leg4)
+            + t163 * (t412 + t147 * t463);
+        let rate_dot_arm_leg4 = t161 * t486;
+        let t488 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t497 = garm_vx_leg1 * t380 + garm_vx_leg2 * t418 + garm_vx_leg3 * t453
+            + garm_vx_leg4 * t488;
+        let t508 = garm_vy_leg1 * t380 + garm_vy_leg2 * t418 + garm_vy_leg3 * t453
+            + garm_vy_leg4 * t488 - t227 * t497;
+        let t510 = garm_wz_leg1 * t380 + garm_wz_leg2 * t418 + garm_wz_leg3 * t453
+            + garm_wz_leg4 * t488 - t201 * t497 - t231 * t508;
+        let t521 = t266 * t497
+            - (minus_garm_vz_leg1 * t380 + minus_garm_vz_leg2 * t418
+                + minus_garm_vz_leg3 * t453 + minus_garm_vz_leg4 * t488) - t287 * t508;
+        let t524 = t294 * (t510 - t291 * t521);
+        let t525 = t343 * t343;
+        let t528 = c_phi * t525 + s_phi * t524;
+        let t531 = s_phi * t525 - c_phi * t524;
+        let t535 = t290 * t521 - t291 * t524;
+        let t539 = t230 * t508 - t287 * t535 - t231 * t524;
+        let t547 = t200 * t497 - t227 * t539 + t266 * t535 - t201 * t524;
         Ok([
-            [0.0, -t534, t537, t553], [0.0, -t537, -t534, t545], [0.0, 0.0, 0.0, t541 + 9.81],
-            [t530, c_phi * t545 - s_phi * t553, -(s_phi * t545 + c_phi * t553), 0.0],
+            [0.0, -t528, t531, t547], [0.0, -t531, -t528, t539], [0.0, 0.0, 0.0, t535 + 9.81],
+            [t524, c_phi * t539 - s_phi * t547, -(s_phi * t539 + c_phi * t547), 0.0],
         ])
     }
     /// The payload's columns of case 2, eq. (38).

@@ -1065,7 +1065,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 445 operations (164 additions, 278 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 329 intermediates.
+    /// 444 operations (163 additions, 278 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 328 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1155,148 +1155,147 @@ impl Spherical3Rrr {
         let c_proximal_leg2 = t135 * t129;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t148 = t131 * t138;
-        let rate_proximal_leg2 = twist[1] - t148;
-        let t151 = minus_rate_distal_leg2 * rate_proximal_leg2;
-        let t153 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t148 - t151;
+        let t147 = t124 * acceleration[0] + t135 * acceleration[2];
+        let t149 = t131 * t138;
+        let rate_proximal_leg2 = twist[1] - t149;
+        let t152 = minus_rate_distal_leg2 * rate_proximal_leg2;
         let rate_dot_proximal_leg2 = acceleration[1] - t138 * minus_rate_distal_leg2
-            - t131 * t153;
-        let t156 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
+            - t131 * (t129 * t147 + minus_rate_distal_leg2 * t149 - t152);
+        let t157 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
         let minus_gproximal_wz_leg2 = c_proximal_leg2 * t131;
-        let t158 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t159 = 9.81 * s_proximal_leg2;
-        let t160 = minus_gproximal_wx_leg2 * t159;
-        let t161 = minus_gproximal_wz_leg2 * t159;
-        let t162 = 9.81 * c_proximal_leg2;
-        let t163 = minus_gproximal_wz_leg2 * t162;
-        let t169 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t170 = minus_rate_distal_leg2 * t169;
-        let t171 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t173 = t170 + t170 - t171;
-        let t174 = c_distal_leg2 * t173;
-        let t176 = c_distal_leg2 * rate_proximal_leg2;
-        let t177 = t176 * t169;
-        let t179 = minus_gproximal_wx_leg2 * t174 - c_proximal_leg2 * t177;
-        let t182 = minus_gproximal_wz_leg2 * t174 + s_proximal_leg2 * t177;
-        let t183 = t176 * t176;
-        let t184 = t169 * t169;
-        let t185 = t183 - t184;
-        let t189 = 2.0 * (t151 - minus_s_distal_leg2 * t173);
+        let t159 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t160 = 9.81 * s_proximal_leg2;
+        let t161 = minus_gproximal_wx_leg2 * t160;
+        let t162 = minus_gproximal_wz_leg2 * t160;
+        let t163 = 9.81 * c_proximal_leg2;
+        let t164 = minus_gproximal_wz_leg2 * t163;
+        let t170 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t171 = minus_rate_distal_leg2 * t170;
+        let t172 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t174 = t171 + t171 - t172;
+        let t175 = c_distal_leg2 * t174;
+        let t177 = c_distal_leg2 * rate_proximal_leg2;
+        let t178 = t177 * t170;
+        let t180 = minus_gproximal_wx_leg2 * t175 - c_proximal_leg2 * t178;
+        let t183 = minus_gproximal_wz_leg2 * t175 + s_proximal_leg2 * t178;
+        let t184 = t177 * t177;
+        let t185 = t170 * t170;
+        let t186 = t184 - t185;
+        let t190 = 2.0 * (t152 - minus_s_distal_leg2 * t174);
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
             - c_proximal_leg2 * acceleration[0] + t138 * rate_proximal_leg2;
-        let t202 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t205 = c_distal_leg2 * (t177 - minus_rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t202 - t183);
-        let t219 = minus_s_distal_leg2 * (t177 + minus_rate_dot_distal_leg2)
-            - c_distal_leg2 * (t184 - t202);
-        let t221 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t229 = minus_s_distal_leg2 * t159;
-        let t237 = 9.81 * t124;
-        let t239 = 1.0 - t134 - t4;
+        let t203 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t206 = c_distal_leg2 * (t178 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t203 - t184);
+        let t220 = minus_s_distal_leg2 * (t178 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t185 - t203);
+        let t222 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t230 = minus_s_distal_leg2 * t160;
+        let t238 = 9.81 * t124;
+        let t240 = 1.0 - t134 - t4;
         let minus_s_distal_leg3 = t122 - t123;
-        let t242 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t242, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t242);
+        let t243 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t243, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t243);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t244 = 1.0 / c_distal_leg3;
-        let c_proximal_leg3 = t239 * t244;
-        let t246 = minus_s_distal_leg3 * t244;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t246;
-        let t249 = t6 + t7;
-        let t251 = t239 * twist[0] + t249 * twist[1];
-        let t252 = t244 * t251;
-        let s_proximal_leg3 = t244 * t249;
+        let t245 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t240 * t245;
+        let t247 = minus_s_distal_leg3 * t245;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t247;
+        let t250 = t6 + t7;
+        let t252 = t240 * twist[0] + t250 * twist[1];
+        let t253 = t245 * t252;
+        let s_proximal_leg3 = t245 * t250;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t261 = t239 * acceleration[0] + t249 * acceleration[1];
-        let t263 = t246 * t252;
-        let rate_proximal_leg3 = twist[2] - t263;
-        let t265 = rate_distal_leg3 * rate_proximal_leg3;
-        let rate_dot_proximal_leg3 = acceleration[2] + t252 * rate_distal_leg3
-            - t246 * (t244 * t261 + t265 - rate_distal_leg3 * t263);
-        let t271 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t246;
-        let t273 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
-        let t279 = c_distal_leg3 * rate_proximal_leg3;
-        let t280 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t281 = t279 * t280;
-        let t283 = rate_distal_leg3 * t280;
-        let t284 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t286 = t283 + t284 + t283;
-        let t287 = c_distal_leg3 * t286;
-        let t289 = s_proximal_leg3 * t281 - minus_gproximal_wx_leg3 * t287;
-        let t292 = minus_gproximal_wy_leg3 * t287 + c_proximal_leg3 * t281;
-        let t295 = 2.0 * (t265 - minus_s_distal_leg3 * t286);
-        let t297 = t279 * t279;
+        let t262 = t240 * acceleration[0] + t250 * acceleration[1];
+        let t264 = t247 * t253;
+        let rate_proximal_leg3 = twist[2] - t264;
+        let t266 = rate_distal_leg3 * rate_proximal_leg3;
+        let rate_dot_proximal_leg3 = acceleration[2] + t253 * rate_distal_leg3
+            - t247 * (t245 * t262 + t266 - rate_distal_leg3 * t264);
+        let t272 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t247;
+        let t274 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t280 = c_distal_leg3 * rate_proximal_leg3;
+        let t281 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t282 = t280 * t281;
+        let t284 = rate_distal_leg3 * t281;
+        let t285 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t287 = t284 + t285 + t284;
+        let t288 = c_distal_leg3 * t287;
+        let t290 = s_proximal_leg3 * t282 - minus_gproximal_wx_leg3 * t288;
+        let t293 = minus_gproximal_wy_leg3 * t288 + c_proximal_leg3 * t282;
+        let t296 = 2.0 * (t266 - minus_s_distal_leg3 * t287);
         let t298 = t280 * t280;
-        let t299 = t297 - t298;
+        let t299 = t281 * t281;
+        let t300 = t298 - t299;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t252 * rate_proximal_leg3;
-        let t312 = rate_distal_leg3 * rate_distal_leg3;
-        let t315 = c_distal_leg3 * (t281 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t312 - t297);
-        let t325 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t331 = minus_s_distal_leg3 * (t281 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t298 - t312);
-        let t339 = 9.81 * t249;
-        let t341 = 9.81 * t239;
-        let t344 = t261 + minus_s_distal_leg3 * acceleration[2];
-        let t347 = t251 + minus_s_distal_leg3 * twist[2];
-        let t349 = minus_s_distal_leg2 * twist[1] + t137;
-        let t350 = t347 * t349;
-        let t351 = minus_s_distal_leg1 * t350;
+            - s_proximal_leg3 * acceleration[0] - t253 * rate_proximal_leg3;
+        let t313 = rate_distal_leg3 * rate_distal_leg3;
+        let t316 = c_distal_leg3 * (t282 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t313 - t298);
+        let t326 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t332 = minus_s_distal_leg3 * (t282 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t299 - t313);
+        let t340 = 9.81 * t250;
+        let t342 = 9.81 * t240;
+        let t345 = t262 + minus_s_distal_leg3 * acceleration[2];
+        let t348 = t252 + minus_s_distal_leg3 * twist[2];
+        let t350 = minus_s_distal_leg2 * twist[1] + t137;
+        let t351 = t348 * t350;
+        let t352 = minus_s_distal_leg1 * t351;
         let rate_wrist_leg1 = t12 * t21;
-        let t354 = t53 + rate_wrist_leg1;
-        let t355 = t354 * t347;
-        let t356 = t124 * t355;
-        let t359 = t5 * t350;
-        let t361 = minus_s_distal_leg2 * t355;
-        let t364 = t18 * t350;
-        let t366 = t135 * t355;
+        let t355 = t53 + rate_wrist_leg1;
+        let t356 = t355 * t348;
+        let t357 = t124 * t356;
+        let t360 = t5 * t351;
+        let t362 = minus_s_distal_leg2 * t356;
+        let t365 = t18 * t351;
+        let t367 = t135 * t356;
         let rate_dot_wrist_leg1 = t12 * t36;
-        let t371 = t104 + minus_rate_distal_leg1 * t60 + rate_dot_wrist_leg1;
-        let t372 = t371 - t350;
-        let t374 = t354 * t349;
-        let t375 = t344 + t374;
-        let t378 = t347 * t347;
-        let t379 = t354 * t354;
-        let t380 = t378 - t379;
-        let t396 = t221 + minus_rate_distal_leg2 * t176 + t129 * t153;
-        let t397 = t396 + t355;
-        let t399 = t349 * t349;
-        let t400 = t399 - t378;
-        let t403 = t344 - t374;
-        let t417 = t239 * t374;
-        let t421 = t249 * t374;
-        let t425 = minus_s_distal_leg3 * t374;
-        let t428 = t379 - t399;
-        let t430 = t396 - t355;
-        let t433 = t371 + t350;
+        let t372 = t104 + minus_rate_distal_leg1 * t60 + rate_dot_wrist_leg1;
+        let t373 = t372 - t351;
+        let t375 = t355 * t350;
+        let t376 = t345 + t375;
+        let t379 = t348 * t348;
+        let t380 = t355 * t355;
+        let t381 = t379 - t380;
+        let t395 = minus_s_distal_leg2 * acceleration[1] + t147;
+        let t396 = t395 + t356;
+        let t398 = t350 * t350;
+        let t399 = t398 - t379;
+        let t402 = t345 - t375;
+        let t416 = t240 * t375;
+        let t420 = t250 * t375;
+        let t424 = minus_s_distal_leg3 * t375;
+        let t427 = t380 - t398;
+        let t429 = t395 - t356;
+        let t432 = t372 + t351;
         Ok([
             [
                 rate_dot_proximal_leg1, -t43, t46, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, -t58, t69, -t89,
-                rate_dot_proximal_leg1 + t58, t103, 0.0, t113, -t119, -t46, -t156, -t160, -t161,
-                -t156, -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
+                rate_dot_proximal_leg1 + t58, t103, 0.0, t113, -t119, -t46, -t157, -t161, -t162,
+                -t157, -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
-                -minus_gproximal_wx_leg2, t179,
-                c_proximal_leg2 * t185 - minus_gproximal_wx_leg2 * t189,
-                minus_gproximal_wx_leg2 * t205 - c_proximal_leg2 * t171, -(t156 + t179),
-                -(minus_gproximal_wx_leg2 * t219 + c_proximal_leg2 * t221),
+                -minus_gproximal_wx_leg2, t180,
+                c_proximal_leg2 * t186 - minus_gproximal_wx_leg2 * t190,
+                minus_gproximal_wx_leg2 * t206 - c_proximal_leg2 * t172, -(t157 + t180),
+                -(minus_gproximal_wx_leg2 * t220 + c_proximal_leg2 * t222),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t229 - t135 * t162, -(c_distal_leg2 * (t160 + t163)),
-                t161, -t271, -t271, -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                minus_gproximal_wx_leg2 * t230 - t135 * t163, -(c_distal_leg2 * (t161 + t164)),
+                t162, -t272, -t272, -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
-                -minus_gproximal_wx_leg3, t289,
-                -(s_proximal_leg3 * t299 - minus_gproximal_wx_leg3 * t295),
-                minus_gproximal_wx_leg3 * t315 + s_proximal_leg3 * t284, -(t271 + t289),
-                s_proximal_leg3 * t325 - minus_gproximal_wx_leg3 * t331,
-                -(s_proximal_leg3 * rate_dot_distal_leg3), t246 * t339, -t339,
-                t239 * t344 + t351 - t356, t239 * t372 + minus_s_distal_leg1 * t375 + t124 * t380,
-                t239 * t397 + minus_s_distal_leg1 * t400 + t124 * t403,
-                minus_s_distal_leg1 * t371 - t417 + t356,
-                t239 * t428 + minus_s_distal_leg1 * t430 + t124 * t433, t417 - t351 + t124 * t396,
-                t339, t119, 9.81 * minus_s_distal_leg2,
+                -minus_gproximal_wx_leg3, t290,
+                -(s_proximal_leg3 * t300 - minus_gproximal_wx_leg3 * t296),
+                minus_gproximal_wx_leg3 * t316 + s_proximal_leg3 * t285, -(t272 + t290),
+                s_proximal_leg3 * t326 - minus_gproximal_wx_leg3 * t332,
+                -(s_proximal_leg3 * rate_dot_distal_leg3), t247 * t340, -t340,
+                t240 * t345 + t352 - t357, t240 * t373 + minus_s_distal_leg1 * t376 + t124 * t381,
+                t240 * t396 + minus_s_distal_leg1 * t399 + t124 * t402,
+                minus_s_distal_leg1 * t372 - t416 + t357,
+                t240 * t427 + minus_s_distal_leg1 * t429 + t124 * t432, t416 - t352 + t124 * t395,
+                t340, t119, 9.81 * minus_s_distal_leg2,
             ],
             [
                 -t40, t44, -t45, -t40, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
@@ -1307,21 +1306,21 @@ impl Spherical3Rrr {
                 s_proximal_leg1 * t104 - minus_gproximal_wy_leg1 * t103,
                 s_proximal_leg1 * minus_rate_dot_distal_leg1,
                 t18 * t46 - minus_gproximal_wy_leg1 * t113, c_distal_leg1 * (t44 + t47), t45,
-                rate_dot_proximal_leg2, t159, t162, rate_dot_proximal_leg2, rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2), 1.0, -t174, t189, -t205,
-                rate_dot_proximal_leg2 + t174, t219, 0.0, -t229, t237, -t162, -t273, -t273,
+                rate_dot_proximal_leg2, t160, t163, rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, -t175, t190, -t206,
+                rate_dot_proximal_leg2 + t175, t220, 0.0, -t230, t238, -t163, -t274, -t274,
                 -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
-                -minus_gproximal_wy_leg3, -t292,
-                c_proximal_leg3 * t299 + minus_gproximal_wy_leg3 * t295,
-                minus_gproximal_wy_leg3 * t315 - c_proximal_leg3 * t284, t292 - t273,
-                -(minus_gproximal_wy_leg3 * t331 + c_proximal_leg3 * t325),
-                c_proximal_leg3 * rate_dot_distal_leg3, -(t246 * t341), t341,
-                t249 * t344 + t359 - t361, t249 * t372 + t5 * t375 + minus_s_distal_leg2 * t380,
-                t249 * t397 + t5 * t400 + minus_s_distal_leg2 * t403, t5 * t371 - t421 + t361,
-                t249 * t428 + t5 * t430 + minus_s_distal_leg2 * t433,
-                t421 - t359 + minus_s_distal_leg2 * t396, -t341, -(9.81 * minus_s_distal_leg1),
-                -t237,
+                -minus_gproximal_wy_leg3, -t293,
+                c_proximal_leg3 * t300 + minus_gproximal_wy_leg3 * t296,
+                minus_gproximal_wy_leg3 * t316 - c_proximal_leg3 * t285, t293 - t274,
+                -(minus_gproximal_wy_leg3 * t332 + c_proximal_leg3 * t326),
+                c_proximal_leg3 * rate_dot_distal_leg3, -(t247 * t342), t342,
+                t250 * t345 + t360 - t362, t250 * t373 + t5 * t376 + minus_s_distal_leg2 * t381,
+                t250 * t396 + t5 * t399 + minus_s_distal_leg2 * t402, t5 * t372 - t420 + t362,
+                t250 * t427 + t5 * t429 + minus_s_distal_leg2 * t432,
+                t420 - t360 + minus_s_distal_leg2 * t395, -t342, -(9.81 * minus_s_distal_leg1),
+                -t238,
             ],
             [
                 -t42, t45, -t47, -t42, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
@@ -1331,21 +1330,21 @@ impl Spherical3Rrr {
                 minus_gproximal_wz_leg1 * t89 - c_proximal_leg1 * t55, -(t42 + t66),
                 -(minus_gproximal_wz_leg1 * t103 + c_proximal_leg1 * t104),
                 -(c_proximal_leg1 * minus_rate_dot_distal_leg1), -(t46 * (c_proximal_leg1 * t12)),
-                0.0, t47, -t158, -t161, -t163, -t158,
+                0.0, t47, -t159, -t162, -t164, -t159,
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
-                -minus_gproximal_wz_leg2, t182,
-                -(minus_gproximal_wz_leg2 * t189 + s_proximal_leg2 * t185),
-                minus_gproximal_wz_leg2 * t205 + s_proximal_leg2 * t171, -(t158 + t182),
-                s_proximal_leg2 * t221 - minus_gproximal_wz_leg2 * t219,
-                s_proximal_leg2 * minus_rate_dot_distal_leg2, t162 * (s_proximal_leg2 * t129), 0.0,
-                t163, rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, t287, -t295, -t315,
-                rate_dot_proximal_leg3 - t287, t331, 0.0, 0.0, 0.0,
-                minus_s_distal_leg3 * t344 + t364 - t366,
-                minus_s_distal_leg3 * t372 + t18 * t375 + t135 * t380,
-                minus_s_distal_leg3 * t397 + t18 * t400 + t135 * t403, t18 * t371 - t425 + t366,
-                minus_s_distal_leg3 * t428 + t18 * t430 + t135 * t433, t425 - t364 + t135 * t396,
+                -minus_gproximal_wz_leg2, t183,
+                -(minus_gproximal_wz_leg2 * t190 + s_proximal_leg2 * t186),
+                minus_gproximal_wz_leg2 * t206 + s_proximal_leg2 * t172, -(t159 + t183),
+                s_proximal_leg2 * t222 - minus_gproximal_wz_leg2 * t220,
+                s_proximal_leg2 * minus_rate_dot_distal_leg2, t163 * (s_proximal_leg2 * t129), 0.0,
+                t164, rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t288, -t296, -t316,
+                rate_dot_proximal_leg3 - t288, t332, 0.0, 0.0, 0.0,
+                minus_s_distal_leg3 * t345 + t365 - t367,
+                minus_s_distal_leg3 * t373 + t18 * t376 + t135 * t381,
+                minus_s_distal_leg3 * t396 + t18 * t399 + t135 * t402, t18 * t372 - t424 + t367,
+                minus_s_distal_leg3 * t427 + t18 * t429 + t135 * t432, t424 - t365 + t135 * t395,
                 0.0, 0.0, 0.0,
             ],
         ])
@@ -3258,7 +3257,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 426 operations (154 additions, 269 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 327 intermediates.
+    /// 425 operations (152 additions, 270 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 326 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3286,240 +3285,238 @@ impl Spherical3Rrr {
         let t17 = pose[0] * t3;
         let t18 = t16 + t17;
         let s_proximal_leg3 = t18 * t13;
-        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        let t22 = minus_s_distal_leg3 * t13;
-        let t25 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
-        let t26 = t22 * t25;
-        let rate_proximal_leg3 = twist[2] - t26;
-        let t28 = c_distal_leg3 * rate_proximal_leg3;
-        let t35 = rate_distal_leg3 * rate_proximal_leg3;
-        let t38 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1]
-            + t35 - rate_distal_leg3 * t26;
-        let rate_dot_proximal_leg3 = acceleration[2] + t25 * rate_distal_leg3
-            - t22 * t38;
-        let t41 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t44 = t13 * t38 - (rate_distal_leg3 * t28 - t41);
+        let t21 = c_proximal_leg3 * acceleration[0] + s_proximal_leg3 * acceleration[1];
+        let t24 = c_distal_leg3 * t21 + minus_s_distal_leg3 * acceleration[2];
         let minus_s_distal_leg1 = t16 - t17;
-        let t47 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t49 = t47 + t13 * t25;
-        let t50 = pose[3] * t0;
-        let t51 = pose[0] * t6;
-        let minus_s_distal_leg2 = t50 - t51;
-        let t54 = t7 + t8;
-        let t57 = 1.0 - pose[1] * t6;
-        let t58 = t57 - t1;
-        let t60 = t54 * twist[0] + t58 * twist[2];
-        let t61 = minus_s_distal_leg2 * twist[1] + t60;
-        let t62 = t49 * t61;
-        let t63 = minus_s_distal_leg1 * t62;
-        let t66 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t66, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t66);
+        let t29 = c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1];
+        let t32 = c_distal_leg3 * t29 + minus_s_distal_leg3 * twist[2];
+        let t33 = pose[3] * t0;
+        let t34 = pose[0] * t6;
+        let minus_s_distal_leg2 = t33 - t34;
+        let t37 = t7 + t8;
+        let t40 = 1.0 - pose[1] * t6;
+        let t41 = t40 - t1;
+        let t43 = t37 * twist[0] + t41 * twist[2];
+        let t44 = minus_s_distal_leg2 * twist[1] + t43;
+        let t45 = t32 * t44;
+        let t46 = minus_s_distal_leg1 * t45;
+        let t49 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t49, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t49);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t68 = 1.0 / c_distal_leg1;
-        let t69 = minus_s_distal_leg1 * t68;
-        let t70 = t57 - t4;
-        let c_proximal_leg1 = t68 * t70;
-        let t73 = t50 + t51;
-        let s_proximal_leg1 = t68 * t73;
-        let t76 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
-        let t77 = t69 * t76;
-        let rate_proximal_leg1 = twist[0] - t77;
-        let t79 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let rate_wrist_leg1 = t68 * t76;
-        let t81 = t79 + rate_wrist_leg1;
-        let t82 = t81 * t49;
-        let t83 = t54 * t82;
-        let t86 = t70 * t62;
-        let t88 = minus_s_distal_leg2 * t82;
-        let t91 = t73 * t62;
-        let t93 = t58 * t82;
+        let t51 = 1.0 / c_distal_leg1;
+        let t52 = minus_s_distal_leg1 * t51;
+        let t53 = t40 - t4;
+        let c_proximal_leg1 = t51 * t53;
+        let t56 = t33 + t34;
+        let s_proximal_leg1 = t51 * t56;
+        let t59 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let t60 = t52 * t59;
+        let rate_proximal_leg1 = twist[0] - t60;
+        let t62 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let rate_wrist_leg1 = t51 * t59;
+        let t64 = t62 + rate_wrist_leg1;
+        let t65 = t64 * t32;
+        let t66 = t37 * t65;
+        let t69 = t53 * t45;
+        let t71 = minus_s_distal_leg2 * t65;
+        let t74 = t56 * t45;
+        let t76 = t41 * t65;
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t104 = minus_rate_distal_leg1 * rate_proximal_leg1;
-        let t106 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
-            + minus_rate_distal_leg1 * t77 - t104;
-        let rate_dot_proximal_leg1 = acceleration[0] - t76 * minus_rate_distal_leg1
-            - t69 * t106;
-        let t109 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t110 = c_distal_leg1 * rate_proximal_leg1;
-        let rate_dot_wrist_leg1 = t68 * t106;
-        let t114 = t109 + minus_rate_distal_leg1 * t110 + rate_dot_wrist_leg1;
-        let t115 = t114 - t62;
-        let t117 = t81 * t61;
-        let t118 = t44 + t117;
-        let t121 = t49 * t49;
-        let t122 = t81 * t81;
-        let t123 = t121 - t122;
-        let t137 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t137, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t137);
+        let t87 = minus_rate_distal_leg1 * rate_proximal_leg1;
+        let t89 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
+            + minus_rate_distal_leg1 * t60 - t87;
+        let rate_dot_proximal_leg1 = acceleration[0] - t59 * minus_rate_distal_leg1
+            - t52 * t89;
+        let t92 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t93 = c_distal_leg1 * rate_proximal_leg1;
+        let rate_dot_wrist_leg1 = t51 * t89;
+        let t97 = t92 + minus_rate_distal_leg1 * t93 + rate_dot_wrist_leg1;
+        let t98 = t97 - t45;
+        let t100 = t64 * t44;
+        let t101 = t24 + t100;
+        let t104 = t32 * t32;
+        let t105 = t64 * t64;
+        let t106 = t104 - t105;
+        let t122 = t37 * acceleration[0] + t41 * acceleration[2];
+        let t123 = minus_s_distal_leg2 * acceleration[1] + t122;
+        let t124 = t123 + t65;
+        let t126 = t44 * t44;
+        let t127 = t126 - t104;
+        let t130 = t24 - t100;
+        let t144 = t5 * t100;
+        let t148 = t18 * t100;
+        let t152 = minus_s_distal_leg3 * t100;
+        let t155 = t105 - t126;
+        let t157 = t123 - t65;
+        let t160 = t97 + t45;
+        let t182 = 9.81 * t18;
+        let t183 = 9.81 * t5;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t52;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t52;
+        let t193 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t193, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t193);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t139 = 1.0 / c_distal_leg2;
-        let t140 = t139 * t60;
-        let s_proximal_leg2 = t54 * t139;
-        let c_proximal_leg2 = t58 * t139;
+        let t195 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t37 * t195;
+        let t197 = minus_s_distal_leg2 * t195;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t197;
+        let t199 = t195 * t43;
+        let c_proximal_leg2 = t41 * t195;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t148 = minus_s_distal_leg2 * t139;
-        let t152 = t148 * t140;
-        let rate_proximal_leg2 = twist[1] - t152;
-        let t155 = minus_rate_distal_leg2 * rate_proximal_leg2;
-        let t157 = s_proximal_leg2 * acceleration[0] + c_proximal_leg2 * acceleration[2]
-            + minus_rate_distal_leg2 * t152 - t155;
-        let rate_dot_proximal_leg2 = acceleration[1] - t140 * minus_rate_distal_leg2
-            - t148 * t157;
-        let t160 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t161 = c_distal_leg2 * rate_proximal_leg2;
-        let t165 = t160 + minus_rate_distal_leg2 * t161 + t139 * t157;
-        let t166 = t165 + t82;
-        let t168 = t61 * t61;
-        let t169 = t168 - t121;
-        let t172 = t44 - t117;
-        let t186 = t5 * t117;
-        let t190 = t18 * t117;
-        let t194 = minus_s_distal_leg3 * t117;
-        let t197 = t122 - t168;
-        let t199 = t165 - t82;
-        let t202 = t114 + t62;
-        let t224 = 9.81 * t18;
-        let t225 = 9.81 * t5;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t69;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t69;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t148;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t148;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t22;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t22;
-        let t242 = 9.81 * c_proximal_leg1;
-        let t244 = minus_gproximal_wz_leg1 * t242;
-        let t245 = 9.81 * s_proximal_leg2;
-        let t247 = minus_gproximal_wz_leg2 * t245;
-        let t248 = 9.81 * s_proximal_leg1;
-        let t250 = 9.81 * c_proximal_leg2;
-        let t267 = minus_rate_distal_leg1 * t79;
-        let t268 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t270 = t267 + t267 - t268;
-        let t271 = c_distal_leg1 * t270;
-        let t273 = t110 * t79;
-        let t279 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t280 = minus_rate_distal_leg2 * t279;
-        let t281 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t283 = t280 + t280 - t281;
-        let t284 = c_distal_leg2 * t283;
-        let t286 = t161 * t279;
-        let t292 = t28 * t47;
-        let t294 = rate_distal_leg3 * t47;
-        let t295 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t297 = t294 + t295 + t294;
-        let t298 = c_distal_leg3 * t297;
-        let t306 = 2.0 * (t104 - minus_s_distal_leg1 * t270);
-        let t308 = t110 * t110;
-        let t309 = t79 * t79;
-        let t310 = t308 - t309;
-        let t316 = t161 * t161;
-        let t317 = t279 * t279;
-        let t318 = t316 - t317;
-        let t322 = 2.0 * (t155 - minus_s_distal_leg2 * t283);
-        let t330 = 2.0 * (t35 - minus_s_distal_leg3 * t297);
-        let t332 = t28 * t28;
-        let t333 = t47 * t47;
-        let t334 = t332 - t333;
+        let t207 = t197 * t199;
+        let rate_proximal_leg2 = twist[1] - t207;
+        let t210 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t199 * minus_rate_distal_leg2
+            - t197 * (t195 * t122 + minus_rate_distal_leg2 * t207 - t210);
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t197;
+        let t218 = minus_s_distal_leg3 * t13;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t218;
+        let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
+        let t225 = t218 * t29;
+        let rate_proximal_leg3 = twist[2] - t225;
+        let t227 = rate_distal_leg3 * rate_proximal_leg3;
+        let rate_dot_proximal_leg3 = acceleration[2] + t29 * rate_distal_leg3
+            - t218 * (t21 + t227 - rate_distal_leg3 * t225);
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t218;
+        let t236 = 9.81 * c_proximal_leg1;
+        let t238 = minus_gproximal_wz_leg1 * t236;
+        let t239 = 9.81 * s_proximal_leg2;
+        let t241 = minus_gproximal_wz_leg2 * t239;
+        let t242 = 9.81 * s_proximal_leg1;
+        let t244 = 9.81 * c_proximal_leg2;
+        let t261 = minus_rate_distal_leg1 * t62;
+        let t262 = c_distal_leg1 * rate_dot_proximal_leg1;
+        let t264 = t261 + t261 - t262;
+        let t265 = c_distal_leg1 * t264;
+        let t267 = t93 * t62;
+        let t273 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t274 = minus_rate_distal_leg2 * t273;
+        let t275 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t277 = t274 + t274 - t275;
+        let t278 = c_distal_leg2 * t277;
+        let t280 = c_distal_leg2 * rate_proximal_leg2;
+        let t281 = t280 * t273;
+        let t287 = c_distal_leg3 * rate_proximal_leg3;
+        let t288 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t289 = t287 * t288;
+        let t291 = rate_distal_leg3 * t288;
+        let t292 = c_distal_leg3 * rate_dot_proximal_leg3;
+        let t294 = t291 + t292 + t291;
+        let t295 = c_distal_leg3 * t294;
+        let t303 = 2.0 * (t87 - minus_s_distal_leg1 * t264);
+        let t305 = t93 * t93;
+        let t306 = t62 * t62;
+        let t307 = t305 - t306;
+        let t313 = t280 * t280;
+        let t314 = t273 * t273;
+        let t315 = t313 - t314;
+        let t319 = 2.0 * (t210 - minus_s_distal_leg2 * t277);
+        let t327 = 2.0 * (t227 - minus_s_distal_leg3 * t294);
+        let t329 = t287 * t287;
+        let t330 = t288 * t288;
+        let t331 = t329 - t330;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t76 * rate_proximal_leg1;
-        let t347 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t350 = c_distal_leg1 * (t273 - minus_rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t347 - t308);
+            - c_proximal_leg1 * acceleration[2] + t59 * rate_proximal_leg1;
+        let t344 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t347 = c_distal_leg1 * (t267 - minus_rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t344 - t305);
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t140 * rate_proximal_leg2;
-        let t364 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t367 = c_distal_leg2 * (t286 - minus_rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t364 - t316);
+            - c_proximal_leg2 * acceleration[0] + t199 * rate_proximal_leg2;
+        let t361 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t364 = c_distal_leg2 * (t281 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t361 - t313);
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
-            - s_proximal_leg3 * acceleration[0] - t25 * rate_proximal_leg3;
-        let t381 = rate_distal_leg3 * rate_distal_leg3;
-        let t384 = c_distal_leg3 * (t292 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t381 - t332);
-        let t395 = minus_s_distal_leg1 * (t273 + minus_rate_dot_distal_leg1)
-            - c_distal_leg1 * (t309 - t347);
-        let t406 = minus_s_distal_leg2 * (t286 + minus_rate_dot_distal_leg2)
-            - c_distal_leg2 * (t317 - t364);
-        let t418 = minus_s_distal_leg3 * (t292 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t333 - t381);
-        let t424 = minus_s_distal_leg1 * t242;
-        let t430 = minus_s_distal_leg2 * t245;
+            - s_proximal_leg3 * acceleration[0] - t29 * rate_proximal_leg3;
+        let t378 = rate_distal_leg3 * rate_distal_leg3;
+        let t381 = c_distal_leg3 * (t289 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t378 - t329);
+        let t392 = minus_s_distal_leg1 * (t267 + minus_rate_dot_distal_leg1)
+            - c_distal_leg1 * (t306 - t344);
+        let t403 = minus_s_distal_leg2 * (t281 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t314 - t361);
+        let t405 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t411 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t417 = minus_s_distal_leg3 * (t289 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t330 - t378);
+        let t423 = minus_s_distal_leg1 * t236;
+        let t429 = minus_s_distal_leg2 * t239;
         Ok([
             [
-                t5 * t44 + t63 - t83, t5 * t115 + minus_s_distal_leg1 * t118 + t54 * t123,
-                t5 * t166 + minus_s_distal_leg1 * t169 + t54 * t172,
-                minus_s_distal_leg1 * t114 - t186 + t83,
-                t5 * t197 + minus_s_distal_leg1 * t199 + t54 * t202, t186 - t63 + t54 * t165, t224,
-                9.81 * t70, 9.81 * minus_s_distal_leg2, rate_dot_proximal_leg1,
+                t5 * t24 + t46 - t66, t5 * t98 + minus_s_distal_leg1 * t101 + t37 * t106,
+                t5 * t124 + minus_s_distal_leg1 * t127 + t37 * t130,
+                minus_s_distal_leg1 * t97 - t144 + t66,
+                t5 * t155 + minus_s_distal_leg1 * t157 + t37 * t160, t144 - t46 + t37 * t123, t182,
+                9.81 * t53, 9.81 * minus_s_distal_leg2, rate_dot_proximal_leg1,
                 -(minus_gproximal_wx_leg2 * rate_dot_proximal_leg2),
-                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t242,
-                -(minus_gproximal_wx_leg2 * t245), t248, -t247, rate_proximal_leg1,
+                -(minus_gproximal_wx_leg3 * rate_dot_proximal_leg3), -t236,
+                -(minus_gproximal_wx_leg2 * t239), t242, -t241, rate_proximal_leg1,
                 -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 ::overact::math::sign(rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3), 1.0,
-                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, -t271,
-                minus_gproximal_wx_leg2 * t284 - c_proximal_leg2 * t286,
-                s_proximal_leg3 * t292 - minus_gproximal_wx_leg3 * t298, t306,
-                c_proximal_leg2 * t318 - minus_gproximal_wx_leg2 * t322,
-                -(s_proximal_leg3 * t334 - minus_gproximal_wx_leg3 * t330), -t350,
-                minus_gproximal_wx_leg2 * t367 - c_proximal_leg2 * t281,
-                minus_gproximal_wx_leg3 * t384 + s_proximal_leg3 * t295, t395,
-                -(minus_gproximal_wx_leg2 * t406 + c_proximal_leg2 * t160),
-                s_proximal_leg3 * t41 - minus_gproximal_wx_leg3 * t418, t424,
-                minus_gproximal_wx_leg2 * t430 - t58 * t250, t224 * t22,
+                -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, -t265,
+                minus_gproximal_wx_leg2 * t278 - c_proximal_leg2 * t281,
+                s_proximal_leg3 * t289 - minus_gproximal_wx_leg3 * t295, t303,
+                c_proximal_leg2 * t315 - minus_gproximal_wx_leg2 * t319,
+                -(s_proximal_leg3 * t331 - minus_gproximal_wx_leg3 * t327), -t347,
+                minus_gproximal_wx_leg2 * t364 - c_proximal_leg2 * t275,
+                minus_gproximal_wx_leg3 * t381 + s_proximal_leg3 * t292, t392,
+                -(minus_gproximal_wx_leg2 * t403 + c_proximal_leg2 * t405),
+                s_proximal_leg3 * t411 - minus_gproximal_wx_leg3 * t417, t423,
+                minus_gproximal_wx_leg2 * t429 - t41 * t244, t182 * t218,
             ],
             [
-                t18 * t44 + t86 - t88, t18 * t115 + t70 * t118 + minus_s_distal_leg2 * t123,
-                t18 * t166 + t70 * t169 + minus_s_distal_leg2 * t172, t70 * t114 - t190 + t88,
-                t18 * t197 + t70 * t199 + minus_s_distal_leg2 * t202,
-                t190 - t86 + minus_s_distal_leg2 * t165, -t225, -(9.81 * minus_s_distal_leg1),
-                -(9.81 * t54), -(minus_gproximal_wy_leg1 * rate_dot_proximal_leg1),
+                t18 * t24 + t69 - t71, t18 * t98 + t53 * t101 + minus_s_distal_leg2 * t106,
+                t18 * t124 + t53 * t127 + minus_s_distal_leg2 * t130, t53 * t97 - t148 + t71,
+                t18 * t155 + t53 * t157 + minus_s_distal_leg2 * t160,
+                t148 - t69 + minus_s_distal_leg2 * t123, -t183, -(9.81 * minus_s_distal_leg1),
+                -(9.81 * t37), -(minus_gproximal_wy_leg1 * rate_dot_proximal_leg1),
                 rate_dot_proximal_leg2, -(minus_gproximal_wy_leg3 * rate_dot_proximal_leg3),
-                minus_gproximal_wy_leg1 * t242, t245, -t244, t250,
+                minus_gproximal_wy_leg1 * t236, t239, -t238, t244,
                 -(minus_gproximal_wy_leg1 * rate_proximal_leg1), rate_proximal_leg2,
                 -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg1, rate_proximal_leg1),
                 ::overact::math::sign(rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
                 -minus_gproximal_wy_leg1, 1.0, -minus_gproximal_wy_leg3,
-                minus_gproximal_wy_leg1 * t271 + s_proximal_leg1 * t273, -t284,
-                -(minus_gproximal_wy_leg3 * t298 + c_proximal_leg3 * t292),
-                -(minus_gproximal_wy_leg1 * t306 + s_proximal_leg1 * t310), t322,
-                c_proximal_leg3 * t334 + minus_gproximal_wy_leg3 * t330,
-                minus_gproximal_wy_leg1 * t350 + s_proximal_leg1 * t268, -t367,
-                minus_gproximal_wy_leg3 * t384 - c_proximal_leg3 * t295,
-                s_proximal_leg1 * t109 - minus_gproximal_wy_leg1 * t395, t406,
-                -(minus_gproximal_wy_leg3 * t418 + c_proximal_leg3 * t41),
-                t73 * t248 - minus_gproximal_wy_leg1 * t424, -t430, -(t22 * t225),
+                minus_gproximal_wy_leg1 * t265 + s_proximal_leg1 * t267, -t278,
+                -(minus_gproximal_wy_leg3 * t295 + c_proximal_leg3 * t289),
+                -(minus_gproximal_wy_leg1 * t303 + s_proximal_leg1 * t307), t319,
+                c_proximal_leg3 * t331 + minus_gproximal_wy_leg3 * t327,
+                minus_gproximal_wy_leg1 * t347 + s_proximal_leg1 * t262, -t364,
+                minus_gproximal_wy_leg3 * t381 - c_proximal_leg3 * t292,
+                s_proximal_leg1 * t92 - minus_gproximal_wy_leg1 * t392, t403,
+                -(minus_gproximal_wy_leg3 * t417 + c_proximal_leg3 * t411),
+                t56 * t242 - minus_gproximal_wy_leg1 * t423, -t429, -(t218 * t183),
             ],
             [
-                minus_s_distal_leg3 * t44 + t91 - t93,
-                minus_s_distal_leg3 * t115 + t73 * t118 + t58 * t123,
-                minus_s_distal_leg3 * t166 + t73 * t169 + t58 * t172, t73 * t114 - t194 + t93,
-                minus_s_distal_leg3 * t197 + t73 * t199 + t58 * t202, t194 - t91 + t58 * t165, 0.0,
+                minus_s_distal_leg3 * t24 + t74 - t76,
+                minus_s_distal_leg3 * t98 + t56 * t101 + t41 * t106,
+                minus_s_distal_leg3 * t124 + t56 * t127 + t41 * t130, t56 * t97 - t152 + t76,
+                minus_s_distal_leg3 * t155 + t56 * t157 + t41 * t160, t152 - t74 + t41 * t123, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * rate_dot_proximal_leg1),
-                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t244,
-                -t247, -(minus_gproximal_wz_leg1 * t248), -(minus_gproximal_wz_leg2 * t250),
+                -(minus_gproximal_wz_leg2 * rate_dot_proximal_leg2), rate_dot_proximal_leg3, t238,
+                -t241, -(minus_gproximal_wz_leg1 * t242), -(minus_gproximal_wz_leg2 * t244),
                 -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2), rate_proximal_leg3,
                 -::overact::math::signed(minus_gproximal_wz_leg1, rate_proximal_leg1),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
                 ::overact::math::sign(rate_proximal_leg3), -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2, 1.0,
-                minus_gproximal_wz_leg1 * t271 - c_proximal_leg1 * t273,
-                minus_gproximal_wz_leg2 * t284 + s_proximal_leg2 * t286, t298,
-                c_proximal_leg1 * t310 - minus_gproximal_wz_leg1 * t306,
-                -(minus_gproximal_wz_leg2 * t322 + s_proximal_leg2 * t318), -t330,
-                minus_gproximal_wz_leg1 * t350 - c_proximal_leg1 * t268,
-                minus_gproximal_wz_leg2 * t367 + s_proximal_leg2 * t281, -t384,
-                -(minus_gproximal_wz_leg1 * t395 + c_proximal_leg1 * t109),
-                s_proximal_leg2 * t160 - minus_gproximal_wz_leg2 * t406, t418,
-                -(t248 * (t68 * c_proximal_leg1)), t250 * (s_proximal_leg2 * t139), 0.0,
+                minus_gproximal_wz_leg1 * t265 - c_proximal_leg1 * t267,
+                minus_gproximal_wz_leg2 * t278 + s_proximal_leg2 * t281, t295,
+                c_proximal_leg1 * t307 - minus_gproximal_wz_leg1 * t303,
+                -(minus_gproximal_wz_leg2 * t319 + s_proximal_leg2 * t315), -t327,
+                minus_gproximal_wz_leg1 * t347 - c_proximal_leg1 * t262,
+                minus_gproximal_wz_leg2 * t364 + s_proximal_leg2 * t275, -t381,
+                -(minus_gproximal_wz_leg1 * t392 + c_proximal_leg1 * t92),
+                s_proximal_leg2 * t405 - minus_gproximal_wz_leg2 * t403, t417,
+                -(t242 * (t51 * c_proximal_leg1)), t244 * (s_proximal_leg2 * t195), 0.0,
             ],
         ])
     }

@@ -1652,7 +1652,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 725 operations (272 additions, 449 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 557 intermediates.
+    /// 733 operations (276 additions, 453 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 565 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1702,502 +1702,506 @@ impl Spherical4Rrr {
         let t51 = minus_s_distal_leg1 * t21;
         let t56 = t26 * twist[0] + t38 * twist[1] - t42 * twist[2];
         let t57 = t51 * t56;
-        let t62 = t5 * twist[0] + t31 * twist[1] + t11 * twist[2];
-        let t67 = t9 * twist[0] + t34 * twist[1] + t14 * twist[2];
-        let rate_wrist_leg1 = t57 + 0.7071067811865475 * (t62 - t67);
-        let t73 = t26 * acceleration[0] + t38 * acceleration[1] - t42 * acceleration[2]
-            - rate_distal_leg1 * (t57 + rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t21 * t73;
-        let t75 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let t58 = rate_distal_leg1 * t57;
+        let t63 = t5 * twist[0] + t31 * twist[1] + t11 * twist[2];
+        let t68 = t9 * twist[0] + t34 * twist[1] + t14 * twist[2];
+        let rate_wrist_leg1 = t57 + 0.7071067811865475 * (t63 - t68);
+        let t74 = t26 * acceleration[0] + t38 * acceleration[1] - t42 * acceleration[2]
+            - (t58 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t21 * t74;
+        let t76 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
         let minus_gproximal_wy_leg1 = t38 * t21;
-        let t77 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let t78 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
         let gproximal_wz_leg1 = t42 * t21;
-        let t79 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t80 = 6.936717523440031 * s_proximal_leg1;
-        let t82 = minus_gproximal_wy_leg1 * t80;
-        let t84 = 6.936717523440031 * c_proximal_leg1;
-        let t85 = minus_gproximal_wx_leg1 * t84;
-        let t86 = minus_gproximal_wy_leg1 * t84;
-        let t87 = gproximal_wz_leg1 * t84;
+        let t80 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t81 = 6.936717523440031 * s_proximal_leg1;
+        let t83 = minus_gproximal_wy_leg1 * t81;
+        let t85 = 6.936717523440031 * c_proximal_leg1;
+        let t86 = minus_gproximal_wx_leg1 * t85;
+        let t87 = minus_gproximal_wy_leg1 * t85;
+        let t88 = gproximal_wz_leg1 * t85;
         let minus_rate_proximal_leg1 = t21 * t56;
-        let t95 = t56 * rate_distal_leg1;
-        let t96 = t51 * t73;
-        let t98 = t95 - (t96 - t95);
-        let t99 = minus_s_distal_leg1 * t98;
-        let t101 = t56 * t57;
-        let t102 = minus_gdistal_wx_leg1 * t101;
-        let t103 = minus_gproximal_wx_leg1 * t99 + t102;
-        let t107 = c_proximal_leg1 * t101 - minus_gproximal_wy_leg1 * t99;
-        let t110 = gproximal_wz_leg1 * t99 + t102;
-        let t115 = c_distal_leg1 * t98 - t51 * (minus_rate_dot_proximal_leg1 + t99);
-        let t117 = t56 * t56;
-        let t118 = t57 * t57;
-        let t119 = t117 - t118;
-        let t120 = minus_gdistal_wx_leg1 * t119;
+        let t97 = t58 + t74 + t58;
+        let t98 = c_distal_leg1 * t97;
+        let t100 = t56 * t57;
+        let t101 = minus_gdistal_wx_leg1 * t100;
+        let t102 = minus_gproximal_wx_leg1 * t98 + t101;
+        let t105 = minus_gproximal_wy_leg1 * t98 - c_proximal_leg1 * t100;
+        let t107 = gproximal_wz_leg1 * t98 + t101;
+        let t108 = t56 * rate_distal_leg1;
+        let t109 = t51 * t74;
+        let t114 = c_distal_leg1 * (t108 - (t109 - t108)) - minus_s_distal_leg1 * t97;
+        let t116 = t56 * t56;
+        let t117 = t57 * t57;
+        let t118 = t116 - t117;
+        let t119 = minus_gdistal_wx_leg1 * t118;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
             + minus_gdistal_wx_leg1 * acceleration[2] + t56 * rate_wrist_leg1;
-        let t136 = rate_distal_leg1 * rate_distal_leg1;
-        let t139 = c_distal_leg1 * (t101 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t136 - t117);
-        let t141 = minus_gdistal_wx_leg1 * t73;
-        let t152 = minus_s_distal_leg1 * (t101 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t118 - t136);
-        let t154 = minus_gdistal_wx_leg1 * t96;
-        let t161 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t163 = 6.936717523440031 * t38;
-        let t165 = t15 * (-6.936717523440031);
-        let t166 = minus_gdistal_wx_leg1 * t165;
-        let t177 = t13 - t4;
-        let t178 = t177 - t34;
-        let t179 = t32 + t33;
-        let t180 = t179 - t14;
-        let minus_s_distal_leg2 = 0.5 * (t178 + t180);
-        let t184 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t184, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t184);
+        let t135 = rate_distal_leg1 * rate_distal_leg1;
+        let t138 = c_distal_leg1 * (t100 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t135 - t116);
+        let t140 = minus_gdistal_wx_leg1 * t74;
+        let t154 = minus_s_distal_leg1 * (t100 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t117 - t135);
+        let t156 = minus_gdistal_wx_leg1 * t109;
+        let t163 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t165 = 6.936717523440031 * t38;
+        let t167 = t15 * (-6.936717523440031);
+        let t168 = minus_gdistal_wx_leg1 * t167;
+        let t179 = t13 - t4;
+        let t180 = t179 - t34;
+        let t181 = t32 + t33;
+        let t182 = t181 - t14;
+        let minus_s_distal_leg2 = 0.5 * (t180 + t182);
+        let t186 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t186, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t186);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t186 = 1.0 / c_distal_leg2;
-        let t187 = t29 - t30;
-        let t188 = t187 - t9;
-        let minus_s_proximal_leg2 = t186 * (0.7071067811865475 * t188);
-        let t191 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t191 * t186;
-        let c_proximal_leg2 = t186 * (t178 - minus_s_distal_leg2);
-        let t196 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t198 = 0.7071067811865475 * (t196 - c_distal_leg2);
-        let t201 = t196 + c_distal_leg2;
-        let t202 = 0.7071067811865475 * t201;
+        let t188 = 1.0 / c_distal_leg2;
+        let t189 = t29 - t30;
+        let t190 = t189 - t9;
+        let minus_s_proximal_leg2 = t188 * (0.7071067811865475 * t190);
+        let t193 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t193 * t188;
+        let c_proximal_leg2 = t188 * (t180 - minus_s_distal_leg2);
+        let t198 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t200 = 0.7071067811865475 * (t198 - c_distal_leg2);
+        let t203 = t198 + c_distal_leg2;
+        let t204 = 0.7071067811865475 * t203;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t211 = minus_s_distal_leg2 * t186;
-        let t216 = t191 * twist[0] + t198 * twist[1] - t202 * twist[2];
-        let t217 = t211 * t216;
-        let t222 = t187 * twist[0] + t177 * twist[1] + t179 * twist[2];
-        let rate_wrist_leg2 = t217 - 0.7071067811865475 * (t67 - t222);
-        let t228 = t191 * acceleration[0] + t198 * acceleration[1]
-            - t202 * acceleration[2] - rate_distal_leg2 * (t217 + rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t186 * t228;
-        let t230 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wy_leg2 = t198 * t186;
-        let t232 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wz_leg2 = t202 * t186;
-        let t234 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t235 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t239 = 6.936717523440031 * c_proximal_leg2;
-        let t240 = minus_gproximal_wx_leg2 * t239;
-        let t241 = minus_gproximal_wy_leg2 * t239;
-        let t242 = gproximal_wz_leg2 * t239;
-        let minus_rate_proximal_leg2 = t186 * t216;
-        let t250 = t216 * rate_distal_leg2;
-        let t251 = t211 * t228;
-        let t253 = t250 - (t251 - t250);
-        let t254 = minus_s_distal_leg2 * t253;
-        let t256 = t216 * t217;
-        let t258 = minus_gproximal_wx_leg2 * t254 + c_proximal_leg2 * t256;
-        let t260 = gdistal_wy_leg2 * t256;
-        let t262 = t260 - minus_gproximal_wy_leg2 * t254;
-        let t265 = gproximal_wz_leg2 * t254 - t260;
-        let t270 = c_distal_leg2 * t253 - t211 * (minus_rate_dot_proximal_leg2 + t254);
-        let t272 = t216 * t216;
-        let t273 = t217 * t217;
-        let t274 = t272 - t273;
-        let t277 = gdistal_wy_leg2 * t274;
+        let t213 = minus_s_distal_leg2 * t188;
+        let t218 = t193 * twist[0] + t200 * twist[1] - t204 * twist[2];
+        let t219 = t213 * t218;
+        let t220 = rate_distal_leg2 * t219;
+        let t225 = t189 * twist[0] + t179 * twist[1] + t181 * twist[2];
+        let rate_wrist_leg2 = t219 - 0.7071067811865475 * (t68 - t225);
+        let t231 = t193 * acceleration[0] + t200 * acceleration[1]
+            - t204 * acceleration[2] - (t220 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t188 * t231;
+        let t233 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wy_leg2 = t200 * t188;
+        let t235 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = t204 * t188;
+        let t237 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t238 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t242 = 6.936717523440031 * c_proximal_leg2;
+        let t243 = minus_gproximal_wx_leg2 * t242;
+        let t244 = minus_gproximal_wy_leg2 * t242;
+        let t245 = gproximal_wz_leg2 * t242;
+        let minus_rate_proximal_leg2 = t188 * t218;
+        let t254 = t220 + t231 + t220;
+        let t255 = c_distal_leg2 * t254;
+        let t257 = t218 * t219;
+        let t259 = minus_gproximal_wx_leg2 * t255 + c_proximal_leg2 * t257;
+        let t261 = gdistal_wy_leg2 * t257;
+        let t262 = minus_gproximal_wy_leg2 * t255 - t261;
+        let t264 = t261 - gproximal_wz_leg2 * t255;
+        let t265 = t218 * rate_distal_leg2;
+        let t266 = t213 * t231;
+        let t271 = c_distal_leg2 * (t265 - (t266 - t265)) - minus_s_distal_leg2 * t254;
+        let t273 = t218 * t218;
+        let t274 = t219 * t219;
+        let t275 = t273 - t274;
+        let t278 = gdistal_wy_leg2 * t275;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t216 * rate_wrist_leg2;
-        let t291 = rate_distal_leg2 * rate_distal_leg2;
-        let t294 = c_distal_leg2 * (t256 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t291 - t272);
-        let t299 = gdistal_wy_leg2 * t228;
-        let t307 = minus_s_distal_leg2 * (t256 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t273 - t291);
-        let t311 = gdistal_wy_leg2 * t251;
-        let t317 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t318 = 6.936717523440031 * t191;
-        let t325 = minus_gproximal_wy_leg2 * t318 - 0.7071067811865475 * t180 * t235;
-        let t326 = 6.936717523440031 * t188;
-        let t327 = t211 * t326;
+            + t218 * rate_wrist_leg2;
+        let t292 = rate_distal_leg2 * rate_distal_leg2;
+        let t295 = c_distal_leg2 * (t257 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t292 - t273);
+        let t300 = gdistal_wy_leg2 * t231;
+        let t311 = minus_s_distal_leg2 * (t257 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t274 - t292);
+        let t315 = gdistal_wy_leg2 * t266;
+        let t321 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t322 = 6.936717523440031 * t193;
+        let t329 = minus_gproximal_wy_leg2 * t322 - 0.7071067811865475 * t182 * t238;
+        let t330 = 6.936717523440031 * t190;
+        let t331 = t213 * t330;
         let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t14);
-        let t335 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t335, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t335);
+        let t339 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t339, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t339);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t337 = 1.0 / c_distal_leg3;
-        let t338 = t11 + t14;
-        let c_proximal_leg3 = t337 * (t338 - s_distal_leg3);
-        let t341 = s_distal_leg3 * c_proximal_leg3;
-        let t343 = 0.7071067811865475 * (t341 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t343 * t337;
-        let t346 = t31 + t34;
-        let s_proximal_leg3 = t337 * (0.7071067811865475 * t346);
-        let t349 = s_distal_leg3 * s_proximal_leg3;
-        let t352 = t341 - c_distal_leg3;
-        let t353 = 0.7071067811865475 * t352;
+        let t341 = 1.0 / c_distal_leg3;
+        let t342 = t11 + t14;
+        let c_proximal_leg3 = t341 * (t342 - s_distal_leg3);
+        let t345 = s_distal_leg3 * c_proximal_leg3;
+        let t347 = 0.7071067811865475 * (t345 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t347 * t341;
+        let t350 = t31 + t34;
+        let s_proximal_leg3 = t341 * (0.7071067811865475 * t350);
+        let t353 = s_distal_leg3 * s_proximal_leg3;
+        let t356 = t345 - c_distal_leg3;
+        let t357 = 0.7071067811865475 * t356;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t362 = s_distal_leg3 * t337;
-        let t367 = t343 * twist[0] + t349 * twist[1] + t353 * twist[2];
-        let t368 = t362 * t367;
-        let minus_rate_wrist_leg3 = t368 + 0.7071067811865475 * (t62 + t67);
-        let t374 = t343 * acceleration[0] + t349 * acceleration[1]
-            + t353 * acceleration[2] + rate_distal_leg3 * (t368 + minus_rate_wrist_leg3);
-        let minus_rate_dot_proximal_leg3 = t337 * t374;
-        let t376 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t349 * t337;
-        let t378 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t353 * t337;
-        let t380 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t381 = 6.936717523440031 * s_proximal_leg3;
-        let t383 = minus_gproximal_wy_leg3 * t381;
-        let t385 = 6.936717523440031 * c_proximal_leg3;
-        let t386 = minus_gproximal_wx_leg3 * t385;
-        let t387 = minus_gproximal_wy_leg3 * t385;
-        let t388 = minus_gproximal_wz_leg3 * t385;
-        let minus_rate_proximal_leg3 = t337 * t367;
-        let t396 = t367 * rate_distal_leg3;
-        let t397 = t362 * t374;
-        let t399 = t396 + t397 + t396;
-        let t400 = s_distal_leg3 * t399;
-        let t402 = t367 * t368;
-        let t403 = gdistal_wx_leg3 * t402;
-        let t404 = minus_gproximal_wx_leg3 * t400 - t403;
-        let t408 = minus_gproximal_wy_leg3 * t400 + c_proximal_leg3 * t402;
-        let t411 = minus_gproximal_wz_leg3 * t400 - t403;
-        let t413 = t367 * t367;
-        let t414 = t368 * t368;
+        let t366 = s_distal_leg3 * t341;
+        let t371 = t347 * twist[0] + t353 * twist[1] + t357 * twist[2];
+        let t372 = t366 * t371;
+        let t373 = rate_distal_leg3 * t372;
+        let minus_rate_wrist_leg3 = t372 + 0.7071067811865475 * (t63 + t68);
+        let t379 = t347 * acceleration[0] + t353 * acceleration[1]
+            + t357 * acceleration[2] + t373 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t341 * t379;
+        let t381 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t353 * t341;
+        let t383 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t357 * t341;
+        let t385 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t386 = 6.936717523440031 * s_proximal_leg3;
+        let t388 = minus_gproximal_wy_leg3 * t386;
+        let t390 = 6.936717523440031 * c_proximal_leg3;
+        let t391 = minus_gproximal_wx_leg3 * t390;
+        let t392 = minus_gproximal_wy_leg3 * t390;
+        let t393 = minus_gproximal_wz_leg3 * t390;
+        let minus_rate_proximal_leg3 = t341 * t371;
+        let t401 = t371 * t372;
+        let t402 = gdistal_wx_leg3 * t401;
+        let t404 = t379 - t373 - t373;
+        let t405 = c_distal_leg3 * t404;
+        let t407 = t402 + minus_gproximal_wx_leg3 * t405;
+        let t410 = c_proximal_leg3 * t401 - minus_gproximal_wy_leg3 * t405;
+        let t412 = t402 + minus_gproximal_wz_leg3 * t405;
+        let t413 = t371 * t371;
+        let t414 = t372 * t372;
         let t415 = t413 - t414;
         let t416 = gdistal_wx_leg3 * t415;
-        let t420 = c_distal_leg3 * t399 + t362 * (minus_rate_dot_proximal_leg3 - t400);
-        let t428 = gdistal_wx_leg3 * t374;
-        let t429 = rate_distal_leg3 * rate_distal_leg3;
+        let t417 = t371 * rate_distal_leg3;
+        let t418 = t366 * t379;
+        let t423 = c_distal_leg3 * (t417 + t418 + t417) + s_distal_leg3 * t404;
+        let t431 = gdistal_wx_leg3 * t379;
+        let t432 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t367 * minus_rate_wrist_leg3;
-        let t441 = s_distal_leg3 * (t429 - t413)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t402);
-        let t453 = s_distal_leg3 * (t402 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t414 - t429);
-        let t455 = gdistal_wx_leg3 * t397;
-        let t462 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t464 = 6.936717523440031 * t349;
-        let t466 = 6.936717523440031 * t338;
-        let t467 = gdistal_wx_leg3 * t466;
-        let s_distal_leg4 = minus_s_distal_leg2 + t14 - t177;
-        let t481 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t481, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t481);
+            - t371 * minus_rate_wrist_leg3;
+        let t444 = s_distal_leg3 * (t432 - t413)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t401);
+        let t459 = s_distal_leg3 * (t401 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t414 - t432);
+        let t461 = gdistal_wx_leg3 * t418;
+        let t468 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t470 = 6.936717523440031 * t353;
+        let t472 = 6.936717523440031 * t342;
+        let t473 = gdistal_wx_leg3 * t472;
+        let s_distal_leg4 = minus_s_distal_leg2 + t14 - t179;
+        let t487 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t487, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t487);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t483 = 1.0 / c_distal_leg4;
-        let t484 = t187 + t9;
-        let minus_s_proximal_leg4 = t483 * (0.7071067811865475 * t484);
-        let t487 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t487 * t483;
-        let t490 = t179 + t14;
-        let c_proximal_leg4 = t483 * (t490 - s_distal_leg4);
-        let t493 = s_distal_leg4 * c_proximal_leg4;
-        let t495 = 0.7071067811865475 * (t493 + c_distal_leg4);
-        let t498 = t493 - c_distal_leg4;
-        let t499 = 0.7071067811865475 * t498;
+        let t489 = 1.0 / c_distal_leg4;
+        let t490 = t189 + t9;
+        let minus_s_proximal_leg4 = t489 * (0.7071067811865475 * t490);
+        let t493 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t493 * t489;
+        let t496 = t181 + t14;
+        let c_proximal_leg4 = t489 * (t496 - s_distal_leg4);
+        let t499 = s_distal_leg4 * c_proximal_leg4;
+        let t501 = 0.7071067811865475 * (t499 + c_distal_leg4);
+        let t504 = t499 - c_distal_leg4;
+        let t505 = 0.7071067811865475 * t504;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t508 = s_distal_leg4 * t483;
-        let t513 = t487 * twist[0] + t495 * twist[1] + t499 * twist[2];
-        let t514 = t508 * t513;
-        let minus_rate_wrist_leg4 = t514 + 0.7071067811865475 * (t222 + t67);
-        let t520 = t487 * acceleration[0] + t495 * acceleration[1]
-            + t499 * acceleration[2] + rate_distal_leg4 * (t514 + minus_rate_wrist_leg4);
-        let minus_rate_dot_proximal_leg4 = t483 * t520;
-        let t522 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t495 * t483;
-        let t524 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t499 * t483;
-        let t526 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t527 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t531 = 6.936717523440031 * c_proximal_leg4;
-        let t532 = minus_gproximal_wx_leg4 * t531;
-        let t533 = minus_gproximal_wy_leg4 * t531;
-        let t534 = minus_gproximal_wz_leg4 * t531;
-        let minus_rate_proximal_leg4 = t483 * t513;
-        let t542 = t513 * rate_distal_leg4;
-        let t543 = t508 * t520;
-        let t545 = t542 + t543 + t542;
-        let t546 = s_distal_leg4 * t545;
-        let t548 = t513 * t514;
-        let t550 = minus_gproximal_wx_leg4 * t546 - c_proximal_leg4 * t548;
-        let t553 = minus_gdistal_wy_leg4 * t548;
-        let t554 = minus_gproximal_wy_leg4 * t546 + t553;
-        let t557 = minus_gproximal_wz_leg4 * t546 + t553;
-        let t559 = t513 * t513;
-        let t560 = t514 * t514;
-        let t561 = t559 - t560;
-        let t566 = c_distal_leg4 * t545 + t508 * (minus_rate_dot_proximal_leg4 - t546);
-        let t570 = minus_gdistal_wy_leg4 * t561;
-        let t575 = rate_distal_leg4 * rate_distal_leg4;
+        let t514 = s_distal_leg4 * t489;
+        let t519 = t493 * twist[0] + t501 * twist[1] + t505 * twist[2];
+        let t520 = t514 * t519;
+        let t521 = rate_distal_leg4 * t520;
+        let minus_rate_wrist_leg4 = t520 + 0.7071067811865475 * (t225 + t68);
+        let t527 = t493 * acceleration[0] + t501 * acceleration[1]
+            + t505 * acceleration[2] + t521 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t489 * t527;
+        let t529 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t501 * t489;
+        let t531 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t505 * t489;
+        let t533 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t534 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t538 = 6.936717523440031 * c_proximal_leg4;
+        let t539 = minus_gproximal_wx_leg4 * t538;
+        let t540 = minus_gproximal_wy_leg4 * t538;
+        let t541 = minus_gproximal_wz_leg4 * t538;
+        let minus_rate_proximal_leg4 = t489 * t519;
+        let t549 = t519 * t520;
+        let t552 = t527 - t521 - t521;
+        let t553 = c_distal_leg4 * t552;
+        let t555 = c_proximal_leg4 * t549 + minus_gproximal_wx_leg4 * t553;
+        let t557 = minus_gdistal_wy_leg4 * t549;
+        let t558 = t557 - minus_gproximal_wy_leg4 * t553;
+        let t560 = t557 - minus_gproximal_wz_leg4 * t553;
+        let t561 = t519 * t519;
+        let t562 = t520 * t520;
+        let t563 = t561 - t562;
+        let t565 = t519 * rate_distal_leg4;
+        let t566 = t514 * t527;
+        let t571 = c_distal_leg4 * (t565 + t566 + t565) + s_distal_leg4 * t552;
+        let t575 = minus_gdistal_wy_leg4 * t563;
+        let t580 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t513 * minus_rate_wrist_leg4;
-        let t587 = s_distal_leg4 * (t575 - t559)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t548);
-        let t591 = minus_gdistal_wy_leg4 * t520;
-        let t599 = s_distal_leg4 * (t548 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t560 - t575);
-        let t603 = minus_gdistal_wy_leg4 * t543;
-        let t609 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t611 = 6.936717523440031 * t487;
-        let t617 = t527 * (0.7071067811865475 * t490) + minus_gproximal_wy_leg4 * t611;
-        let t618 = 9.81 * t487;
-        let t628 = t5 * acceleration[0] + t31 * acceleration[1] + t11 * acceleration[2];
-        let t630 = t62 * t67;
-        let t631 = t187 * t630;
-        let t633 = t62 * t222;
-        let t634 = t9 * t633;
-        let t637 = t177 * t630;
-        let t639 = t34 * t633;
-        let t642 = t179 * t630;
-        let t644 = t14 * t633;
-        let t650 = t187 * acceleration[0] + t177 * acceleration[1]
-            + t179 * acceleration[2];
-        let t651 = t650 - t630;
-        let t653 = t222 * t67;
-        let t654 = t628 + t653;
-        let t657 = t62 * t62;
-        let t658 = t222 * t222;
-        let t659 = t657 - t658;
-        let t676 = t9 * acceleration[0] + t34 * acceleration[1] + t14 * acceleration[2];
-        let t677 = t676 + t633;
-        let t679 = t67 * t67;
-        let t680 = t679 - t657;
-        let t683 = t628 - t653;
-        let t697 = t5 * t653;
-        let t701 = t31 * t653;
-        let t705 = t11 * t653;
-        let t708 = t658 - t679;
-        let t710 = t676 - t633;
-        let t713 = t650 + t630;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t519 * minus_rate_wrist_leg4;
+        let t592 = s_distal_leg4 * (t580 - t561)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t549);
+        let t596 = minus_gdistal_wy_leg4 * t527;
+        let t607 = s_distal_leg4 * (t549 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t562 - t580);
+        let t611 = minus_gdistal_wy_leg4 * t566;
+        let t617 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t619 = 6.936717523440031 * t493;
+        let t625 = t534 * (0.7071067811865475 * t496) + minus_gproximal_wy_leg4 * t619;
+        let t626 = 9.81 * t493;
+        let t636 = t5 * acceleration[0] + t31 * acceleration[1] + t11 * acceleration[2];
+        let t638 = t63 * t68;
+        let t639 = t189 * t638;
+        let t641 = t63 * t225;
+        let t642 = t9 * t641;
+        let t645 = t179 * t638;
+        let t647 = t34 * t641;
+        let t650 = t181 * t638;
+        let t652 = t14 * t641;
+        let t658 = t189 * acceleration[0] + t179 * acceleration[1]
+            + t181 * acceleration[2];
+        let t659 = t658 - t638;
+        let t661 = t225 * t68;
+        let t662 = t636 + t661;
+        let t665 = t63 * t63;
+        let t666 = t225 * t225;
+        let t667 = t665 - t666;
+        let t684 = t9 * acceleration[0] + t34 * acceleration[1] + t14 * acceleration[2];
+        let t685 = t684 + t641;
+        let t687 = t68 * t68;
+        let t688 = t687 - t665;
+        let t691 = t636 - t661;
+        let t705 = t5 * t661;
+        let t709 = t31 * t661;
+        let t713 = t11 * t661;
+        let t716 = t666 - t687;
+        let t718 = t684 - t641;
+        let t721 = t658 + t638;
         Ok([
             [
-                t75, minus_gproximal_wx_leg1 * t80, t85, t75,
+                t76, minus_gproximal_wx_leg1 * t81, t86, t76,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t75 + t103,
-                -(minus_gproximal_wx_leg1 * t115 + t120),
-                minus_gproximal_wx_leg1 * t139 - t141,
-                -t103,
-                -(minus_gproximal_wx_leg1 * t152 + t154),
-                -t161,
-                -(minus_gproximal_wx_leg1 * t163 + t166),
+                t102,
+                -(minus_gproximal_wx_leg1 * t114 + t119),
+                minus_gproximal_wx_leg1 * t138 - t140,
+                t76 - t102,
+                -(minus_gproximal_wx_leg1 * t154 + t156),
+                -t163,
+                -(minus_gproximal_wx_leg1 * t165 + t168),
                 t35 * (-6.936717523440031),
-                -t85,
-                t230,
-                -(minus_gproximal_wx_leg2 * t235),
-                t240,
-                t230,
+                -t86,
+                t233,
+                -(minus_gproximal_wx_leg2 * t238),
+                t243,
+                t233,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t230 + t258,
-                -(minus_gproximal_wx_leg2 * t270 + c_proximal_leg2 * t274),
-                minus_gproximal_wx_leg2 * t294 - c_proximal_leg2 * t228,
-                -t258,
-                -(minus_gproximal_wx_leg2 * t307 + c_proximal_leg2 * t251),
+                t259,
+                -(minus_gproximal_wx_leg2 * t271 + c_proximal_leg2 * t275),
+                minus_gproximal_wx_leg2 * t295 - c_proximal_leg2 * t231,
+                t233 - t259,
+                -(minus_gproximal_wx_leg2 * t311 + c_proximal_leg2 * t266),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t318 + t180 * t239,
-                -(gdistal_wy_leg2 * t327 + t201 * t239),
-                -t240,
-                t376,
-                minus_gproximal_wx_leg3 * t381,
-                t386,
-                t376,
+                minus_gproximal_wx_leg2 * t322 + t182 * t242,
+                -(gdistal_wy_leg2 * t331 + t203 * t242),
+                -t243,
+                t381,
+                minus_gproximal_wx_leg3 * t386,
+                t391,
+                t381,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t376 - t404,
-                t416 - minus_gproximal_wx_leg3 * t420,
-                t428 - minus_gproximal_wx_leg3 * t441,
-                t404,
-                -(minus_gproximal_wx_leg3 * t453 + t455),
-                t462,
-                minus_gproximal_wx_leg3 * t464 + t467,
-                6.936717523440031 * t346,
-                -t386,
-                t522,
-                -(minus_gproximal_wx_leg4 * t527),
-                t532,
-                t522,
+                t407,
+                t416 - minus_gproximal_wx_leg3 * t423,
+                t431 - minus_gproximal_wx_leg3 * t444,
+                t381 - t407,
+                -(minus_gproximal_wx_leg3 * t459 + t461),
+                t468,
+                minus_gproximal_wx_leg3 * t470 + t473,
+                6.936717523440031 * t350,
+                -t391,
+                t529,
+                -(minus_gproximal_wx_leg4 * t534),
+                t539,
+                t529,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t522 - t550,
-                c_proximal_leg4 * t561 - minus_gproximal_wx_leg4 * t566,
-                c_proximal_leg4 * t520 - minus_gproximal_wx_leg4 * t587,
-                t550,
-                -(minus_gproximal_wx_leg4 * t599 + c_proximal_leg4 * t543),
+                t555,
+                c_proximal_leg4 * t563 - minus_gproximal_wx_leg4 * t571,
+                c_proximal_leg4 * t527 - minus_gproximal_wx_leg4 * t592,
+                t529 - t555,
+                -(minus_gproximal_wx_leg4 * t607 + c_proximal_leg4 * t566),
                 c_proximal_leg4 * rate_dot_distal_leg4,
-                t490 * t531 - minus_gproximal_wx_leg4 * t611,
-                -(minus_gdistal_wy_leg4 * t618 + t498 * t531),
-                -t532,
-                t5 * t628 + t631 - t634,
-                t5 * t651 + t187 * t654 + t9 * t659,
-                t5 * t677 + t187 * t680 + t9 * t683,
-                t187 * t650 - t697 + t634,
-                t5 * t708 + t187 * t710 + t9 * t713,
-                t697 - t631 + t9 * t676,
+                t496 * t538 - minus_gproximal_wx_leg4 * t619,
+                -(minus_gdistal_wy_leg4 * t626 + t504 * t538),
+                -t539,
+                t5 * t636 + t639 - t642,
+                t5 * t659 + t189 * t662 + t9 * t667,
+                t5 * t685 + t189 * t688 + t9 * t691,
+                t189 * t658 - t705 + t642,
+                t5 * t716 + t189 * t718 + t9 * t721,
+                t705 - t639 + t9 * t684,
                 9.81 * t31,
-                9.81 * t177,
+                9.81 * t179,
                 9.81 * t34,
             ],
             [
-                t77, t82, t86, t77, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t78, t83, t87, t78, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t77 - t107,
-                c_proximal_leg1 * t119 - minus_gproximal_wy_leg1 * t115,
-                minus_gproximal_wy_leg1 * t139 + c_proximal_leg1 * t73,
-                t107,
-                c_proximal_leg1 * t96 - minus_gproximal_wy_leg1 * t152,
+                t105,
+                c_proximal_leg1 * t118 - minus_gproximal_wy_leg1 * t114,
+                minus_gproximal_wy_leg1 * t138 + c_proximal_leg1 * t74,
+                t78 - t105,
+                c_proximal_leg1 * t109 - minus_gproximal_wy_leg1 * t154,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * t165 - minus_gproximal_wy_leg1 * t163,
-                c_distal_leg1 * t82 + t41 * t84,
-                -t86,
-                t232,
-                -(minus_gproximal_wy_leg2 * t235),
-                t241,
-                t232,
+                c_proximal_leg1 * t167 - minus_gproximal_wy_leg1 * t165,
+                c_distal_leg1 * t83 + t41 * t85,
+                -t87,
+                t235,
+                -(minus_gproximal_wy_leg2 * t238),
+                t244,
+                t235,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t232 - t262,
-                t277 - minus_gproximal_wy_leg2 * t270,
-                minus_gproximal_wy_leg2 * t294 + t299,
                 t262,
-                t311 - minus_gproximal_wy_leg2 * t307,
-                t317,
-                t325,
-                t326,
-                -t241,
-                t378,
+                t278 - minus_gproximal_wy_leg2 * t271,
+                minus_gproximal_wy_leg2 * t295 + t300,
+                t235 - t262,
+                t315 - minus_gproximal_wy_leg2 * t311,
+                t321,
+                t329,
+                t330,
+                -t244,
                 t383,
-                t387,
-                t378,
+                t388,
+                t392,
+                t383,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -(t408 - t378),
-                -(minus_gproximal_wy_leg3 * t420 + c_proximal_leg3 * t415),
-                -(minus_gproximal_wy_leg3 * t441 + c_proximal_leg3 * t374),
-                t408,
-                c_proximal_leg3 * t397 - minus_gproximal_wy_leg3 * t453,
+                -t410,
+                -(minus_gproximal_wy_leg3 * t423 + c_proximal_leg3 * t415),
+                -(minus_gproximal_wy_leg3 * t444 + c_proximal_leg3 * t379),
+                t383 + t410,
+                c_proximal_leg3 * t418 - minus_gproximal_wy_leg3 * t459,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t464 - c_proximal_leg3 * t466,
-                c_distal_leg3 * t383 + t352 * t385,
-                -t387,
-                t524,
-                -(minus_gproximal_wy_leg4 * t527),
-                t533,
-                t524,
+                minus_gproximal_wy_leg3 * t470 - c_proximal_leg3 * t472,
+                c_distal_leg3 * t388 + t356 * t390,
+                -t392,
+                t531,
+                -(minus_gproximal_wy_leg4 * t534),
+                t540,
+                t531,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                -(t554 - t524),
-                -(minus_gproximal_wy_leg4 * t566 + t570),
-                -(minus_gproximal_wy_leg4 * t587 + t591),
-                t554,
-                t603 - minus_gproximal_wy_leg4 * t599,
-                -t609,
+                -t558,
+                -(minus_gproximal_wy_leg4 * t571 + t575),
+                -(minus_gproximal_wy_leg4 * t592 + t596),
+                t531 + t558,
+                t611 - minus_gproximal_wy_leg4 * t607,
                 -t617,
-                -(6.936717523440031 * t484),
-                -t533,
-                t31 * t628 + t637 - t639,
-                t31 * t651 + t177 * t654 + t34 * t659,
-                t31 * t677 + t177 * t680 + t34 * t683,
-                t177 * t650 - t701 + t639,
-                t31 * t708 + t177 * t710 + t34 * t713,
-                t701 - t637 + t34 * t676,
+                -t625,
+                -(6.936717523440031 * t490),
+                -t540,
+                t31 * t636 + t645 - t647,
+                t31 * t659 + t179 * t662 + t34 * t667,
+                t31 * t685 + t179 * t688 + t34 * t691,
+                t179 * t658 - t709 + t647,
+                t31 * t716 + t179 * t718 + t34 * t721,
+                t709 - t645 + t34 * t684,
                 -(9.81 * t5),
-                -(9.81 * t187),
+                -(9.81 * t189),
                 -(9.81 * t9),
             ],
             [
-                -t79, -(gproximal_wz_leg1 * t80), -t87, -t79,
+                -t80, -(gproximal_wz_leg1 * t81), -t88, -t80,
                 -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -(t79 + t110), gproximal_wz_leg1 * t115 + t120,
-                t141 - gproximal_wz_leg1 * t139, t110, gproximal_wz_leg1 * t152 + t154, t161,
-                gproximal_wz_leg1 * t163 + t166, 0.0, t87, -t234, gproximal_wz_leg2 * t235, -t242,
-                -t234, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -t107, gproximal_wz_leg1 * t114 + t119,
+                t140 - gproximal_wz_leg1 * t138, t107 - t80, gproximal_wz_leg1 * t154 + t156, t163,
+                gproximal_wz_leg1 * t165 + t168, 0.0, t88, -t237, gproximal_wz_leg2 * t238, -t245,
+                -t237, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, -(t234 + t265), gproximal_wz_leg2 * t270 - t277,
-                -(gproximal_wz_leg2 * t294 + t299), t265, gproximal_wz_leg2 * t307 - t311, -t317,
-                -(t325 + t327), 0.0, t242, t380, minus_gproximal_wz_leg3 * t381, t388, t380,
+                gproximal_wz_leg2, t264, gproximal_wz_leg2 * t271 - t278,
+                -(gproximal_wz_leg2 * t295 + t300), -(t237 + t264), gproximal_wz_leg2 * t311 - t315,
+                -t321, -(t329 + t331), 0.0, t245, t385, minus_gproximal_wz_leg3 * t386, t393, t385,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t380 - t411,
-                t416 - minus_gproximal_wz_leg3 * t420,
-                t428 - minus_gproximal_wz_leg3 * t441,
-                t411,
-                -(minus_gproximal_wz_leg3 * t453 + t455),
-                t462,
-                minus_gproximal_wz_leg3 * t464 + t467,
+                t412,
+                t416 - minus_gproximal_wz_leg3 * t423,
+                t431 - minus_gproximal_wz_leg3 * t444,
+                t385 - t412,
+                -(minus_gproximal_wz_leg3 * t459 + t461),
+                t468,
+                minus_gproximal_wz_leg3 * t470 + t473,
                 0.0,
-                -t388,
-                t526,
-                -(minus_gproximal_wz_leg4 * t527),
-                t534,
-                t526,
+                -t393,
+                t533,
+                -(minus_gproximal_wz_leg4 * t534),
+                t541,
+                t533,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                -(t557 - t526),
-                -(minus_gproximal_wz_leg4 * t566 + t570),
-                -(minus_gproximal_wz_leg4 * t587 + t591),
-                t557,
-                t603 - minus_gproximal_wz_leg4 * t599,
-                -t609,
-                t618 - t617,
+                -t560,
+                -(minus_gproximal_wz_leg4 * t571 + t575),
+                -(minus_gproximal_wz_leg4 * t592 + t596),
+                t533 + t560,
+                t611 - minus_gproximal_wz_leg4 * t607,
+                -t617,
+                t626 - t625,
                 0.0,
-                -t534,
-                t11 * t628 + t642 - t644,
-                t11 * t651 + t179 * t654 + t14 * t659,
-                t11 * t677 + t179 * t680 + t14 * t683,
-                t179 * t650 - t705 + t644,
-                t11 * t708 + t179 * t710 + t14 * t713,
-                t705 - t642 + t14 * t676,
+                -t541,
+                t11 * t636 + t650 - t652,
+                t11 * t659 + t181 * t662 + t14 * t667,
+                t11 * t685 + t181 * t688 + t14 * t691,
+                t181 * t658 - t713 + t652,
+                t11 * t716 + t181 * t718 + t14 * t721,
+                t713 - t650 + t14 * t684,
                 0.0,
                 0.0,
                 0.0,
@@ -2215,7 +2219,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 707 operations (256 additions, 447 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 551 intermediates.
+    /// 715 operations (260 additions, 451 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 559 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2252,511 +2256,512 @@ impl Spherical4Rrr {
         let t23 = c_distal_leg1 * t8;
         let t28 = t10 * twist[2] - (t7 * twist[0] + t13 * twist[1]);
         let t29 = t23 * t28;
-        let t30 = 0.7071067811865476 * c_distal_leg1;
-        let t31 = minus_s_distal_leg1 * t4;
-        let t32 = t30 - t31;
-        let t34 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t37 = t31 + t30;
-        let minus_rate_wrist_leg1 = t29 + t32 * twist[0] - t34 * twist[1]
-            + t37 * twist[2];
-        let t43 = t10 * acceleration[2] - (t7 * acceleration[0] + t13 * acceleration[1])
-            + rate_distal_leg1 * (t29 + minus_rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t8 * t43;
-        let t45 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let t30 = rate_distal_leg1 * t29;
+        let t31 = 0.7071067811865476 * c_distal_leg1;
+        let t32 = minus_s_distal_leg1 * t4;
+        let t33 = t31 - t32;
+        let t35 = minus_s_proximal_leg1 * minus_s_distal_leg1;
+        let t38 = t32 + t31;
+        let minus_rate_wrist_leg1 = t29 + t33 * twist[0] - t35 * twist[1]
+            + t38 * twist[2];
+        let t44 = t10 * acceleration[2] - (t7 * acceleration[0] + t13 * acceleration[1])
+            + t30 + rate_distal_leg1 * minus_rate_wrist_leg1;
+        let minus_rate_dot_proximal_leg1 = t8 * t44;
+        let t46 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
         let gproximal_wy_leg1 = t13 * t8;
-        let t47 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let t48 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
         let minus_gproximal_wz_leg1 = t10 * t8;
-        let t49 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t50 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t54 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t55 = gproximal_wx_leg1 * t54;
-        let t56 = gproximal_wy_leg1 * t54;
-        let t57 = minus_gproximal_wz_leg1 * t54;
+        let t50 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t51 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t55 = 6.9367175234400325 * minus_c_proximal_leg1;
+        let t56 = gproximal_wx_leg1 * t55;
+        let t57 = gproximal_wy_leg1 * t55;
+        let t58 = minus_gproximal_wz_leg1 * t55;
         let minus_rate_proximal_leg1 = t8 * t28;
-        let t65 = t28 * t29;
-        let t66 = minus_gdistal_wx_leg1 * t65;
-        let t67 = t28 * rate_distal_leg1;
-        let t68 = t23 * t43;
-        let t70 = t67 + t68 + t67;
-        let t71 = c_distal_leg1 * t70;
-        let t73 = t66 - gproximal_wx_leg1 * t71;
-        let t77 = gproximal_wy_leg1 * t71 + minus_c_proximal_leg1 * t65;
-        let t80 = minus_gproximal_wz_leg1 * t71 - t66;
-        let t85 = minus_s_distal_leg1 * t70 + t23 * (minus_rate_dot_proximal_leg1 - t71);
-        let t87 = t28 * t28;
-        let t88 = t29 * t29;
-        let t89 = t87 - t88;
-        let t90 = minus_gdistal_wx_leg1 * t89;
-        let t97 = rate_distal_leg1 * rate_distal_leg1;
+        let t67 = t44 - t30 - t30;
+        let t68 = minus_s_distal_leg1 * t67;
+        let t70 = t28 * t29;
+        let t71 = minus_gdistal_wx_leg1 * t70;
+        let t72 = gproximal_wx_leg1 * t68 + t71;
+        let t75 = minus_c_proximal_leg1 * t70 - gproximal_wy_leg1 * t68;
+        let t77 = t71 + minus_gproximal_wz_leg1 * t68;
+        let t78 = t28 * rate_distal_leg1;
+        let t79 = t23 * t44;
+        let t84 = minus_s_distal_leg1 * (t78 + t79 + t78) + c_distal_leg1 * t67;
+        let t86 = t28 * t28;
+        let t87 = t29 * t29;
+        let t88 = t86 - t87;
+        let t89 = minus_gdistal_wx_leg1 * t88;
+        let t96 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
             + minus_gdistal_wx_leg1 * acceleration[2] - t28 * minus_rate_wrist_leg1;
-        let t109 = c_distal_leg1 * (t97 - t87)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t65);
-        let t111 = minus_gdistal_wx_leg1 * t43;
-        let t122 = c_distal_leg1 * (t65 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t88 - t97);
-        let t124 = minus_gdistal_wx_leg1 * t68;
-        let t131 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t133 = c_distal_leg1 * t50;
-        let t135 = 9.81 * t37;
-        let t136 = minus_gdistal_wx_leg1 * t135;
-        let t149 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t150 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t149 * t150;
-        let t153 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t154 = c_distal_leg2 * t153;
-        let t155 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t156 = t154 + t155;
-        let t159 = t154 - t155;
+        let t108 = c_distal_leg1 * (t96 - t86)
+            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t70);
+        let t110 = minus_gdistal_wx_leg1 * t44;
+        let t124 = c_distal_leg1 * (t70 + rate_dot_distal_leg1)
+            - minus_s_distal_leg1 * (t87 - t96);
+        let t126 = minus_gdistal_wx_leg1 * t79;
+        let t133 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t135 = c_distal_leg1 * t51;
+        let t137 = 9.81 * t38;
+        let t138 = minus_gdistal_wx_leg1 * t137;
+        let t151 = minus_s_proximal_leg2 * c_distal_leg2;
+        let t152 = 1.0 / minus_s_distal_leg2;
+        let minus_gproximal_wx_leg2 = t151 * t152;
+        let t155 = 0.7071067811865476 * minus_c_proximal_leg2;
+        let t156 = c_distal_leg2 * t155;
+        let t157 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t158 = t156 + t157;
+        let t161 = t156 - t157;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t168 = c_distal_leg2 * t150;
-        let t173 = t149 * twist[0] - t156 * twist[1] + t159 * twist[2];
-        let t174 = t168 * t173;
-        let t175 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t177 = 0.7071067811865476 * c_distal_leg2;
-        let t178 = minus_s_distal_leg2 * t153;
-        let t179 = t177 - t178;
-        let t182 = t178 + t177;
-        let minus_rate_wrist_leg2 = t174 + t175 * twist[0] + t179 * twist[1]
-            + t182 * twist[2];
-        let t188 = t149 * acceleration[0] - t156 * acceleration[1]
-            + t159 * acceleration[2] + rate_distal_leg2 * (t174 + minus_rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t150 * t188;
-        let t190 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wy_leg2 = t156 * t150;
-        let t192 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wz_leg2 = t159 * t150;
-        let t194 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t195 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t199 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t200 = minus_gproximal_wx_leg2 * t199;
-        let t201 = gproximal_wy_leg2 * t199;
-        let t202 = minus_gproximal_wz_leg2 * t199;
-        let minus_rate_proximal_leg2 = t150 * t173;
-        let t210 = t173 * rate_distal_leg2;
-        let t211 = t168 * t188;
-        let t213 = t210 + t211 + t210;
-        let t214 = c_distal_leg2 * t213;
-        let t216 = t173 * t174;
-        let t218 = minus_gproximal_wx_leg2 * t214 + minus_c_proximal_leg2 * t216;
-        let t220 = minus_gdistal_wy_leg2 * t216;
-        let t222 = t220 - gproximal_wy_leg2 * t214;
-        let t225 = minus_gproximal_wz_leg2 * t214 - t220;
-        let t230 = minus_s_distal_leg2 * t213
-            + t168 * (minus_rate_dot_proximal_leg2 - t214);
-        let t232 = t173 * t173;
-        let t233 = t174 * t174;
-        let t234 = t232 - t233;
-        let t238 = minus_gdistal_wy_leg2 * t234;
-        let t242 = rate_distal_leg2 * rate_distal_leg2;
+        let t170 = c_distal_leg2 * t152;
+        let t175 = t151 * twist[0] - t158 * twist[1] + t161 * twist[2];
+        let t176 = t170 * t175;
+        let t177 = rate_distal_leg2 * t176;
+        let t178 = minus_s_proximal_leg2 * minus_s_distal_leg2;
+        let t180 = 0.7071067811865476 * c_distal_leg2;
+        let t181 = minus_s_distal_leg2 * t155;
+        let t182 = t180 - t181;
+        let t185 = t181 + t180;
+        let minus_rate_wrist_leg2 = t176 + t178 * twist[0] + t182 * twist[1]
+            + t185 * twist[2];
+        let t191 = t151 * acceleration[0] - t158 * acceleration[1]
+            + t161 * acceleration[2] + t177 + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let minus_rate_dot_proximal_leg2 = t152 * t191;
+        let t193 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wy_leg2 = t158 * t152;
+        let t195 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = t161 * t152;
+        let t197 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t198 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t202 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let t203 = minus_gproximal_wx_leg2 * t202;
+        let t204 = gproximal_wy_leg2 * t202;
+        let t205 = minus_gproximal_wz_leg2 * t202;
+        let minus_rate_proximal_leg2 = t152 * t175;
+        let t214 = t191 - t177 - t177;
+        let t215 = minus_s_distal_leg2 * t214;
+        let t217 = t175 * t176;
+        let t219 = minus_c_proximal_leg2 * t217 - minus_gproximal_wx_leg2 * t215;
+        let t221 = minus_gdistal_wy_leg2 * t217;
+        let t222 = gproximal_wy_leg2 * t215 + t221;
+        let t224 = t221 + minus_gproximal_wz_leg2 * t215;
+        let t225 = t175 * rate_distal_leg2;
+        let t226 = t170 * t191;
+        let t231 = minus_s_distal_leg2 * (t225 + t226 + t225) + c_distal_leg2 * t214;
+        let t233 = t175 * t175;
+        let t234 = t176 * t176;
+        let t235 = t233 - t234;
+        let t239 = minus_gdistal_wy_leg2 * t235;
+        let t243 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t173 * minus_rate_wrist_leg2;
-        let t254 = c_distal_leg2 * (t242 - t232)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t216);
-        let t259 = minus_gdistal_wy_leg2 * t188;
-        let t268 = c_distal_leg2 * (t216 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t233 - t242);
-        let t272 = minus_gdistal_wy_leg2 * t211;
-        let t277 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t278 = c_distal_leg2 * t195;
-        let t280 = 9.81 * t182;
-        let t284 = minus_gdistal_wy_leg2 * t280;
-        let t294 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t295 = c_distal_leg3 * t294;
-        let t296 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t297 = t295 + t296;
-        let t298 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t297 * t298;
-        let t301 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t304 = t295 - t296;
+            - t175 * minus_rate_wrist_leg2;
+        let t255 = c_distal_leg2 * (t243 - t233)
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t217);
+        let t260 = minus_gdistal_wy_leg2 * t191;
+        let t272 = c_distal_leg2 * (t217 + rate_dot_distal_leg2)
+            - minus_s_distal_leg2 * (t234 - t243);
+        let t276 = minus_gdistal_wy_leg2 * t226;
+        let t281 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t282 = c_distal_leg2 * t198;
+        let t284 = 9.81 * t185;
+        let t288 = minus_gdistal_wy_leg2 * t284;
+        let t298 = 0.7071067811865476 * minus_c_proximal_leg3;
+        let t299 = c_distal_leg3 * t298;
+        let t300 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t301 = t299 + t300;
+        let t302 = 1.0 / minus_s_distal_leg3;
+        let minus_gproximal_wx_leg3 = t301 * t302;
+        let t305 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t308 = t299 - t300;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t313 = c_distal_leg3 * t298;
-        let t318 = t297 * twist[0] + t301 * twist[1] + t304 * twist[2];
-        let t319 = t313 * t318;
-        let t320 = minus_s_distal_leg3 * t294;
-        let t321 = 0.7071067811865476 * c_distal_leg3;
-        let t322 = t320 - t321;
-        let t324 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t327 = t320 + t321;
-        let minus_rate_wrist_leg3 = t319 + t322 * twist[0] + t324 * twist[1]
-            + t327 * twist[2];
-        let t333 = t297 * acceleration[0] + t301 * acceleration[1]
-            + t304 * acceleration[2] + rate_distal_leg3 * (t319 + minus_rate_wrist_leg3);
-        let minus_rate_dot_proximal_leg3 = t298 * t333;
-        let t335 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t301 * t298;
-        let t337 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t304 * t298;
-        let t339 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t340 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t344 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t345 = minus_gproximal_wx_leg3 * t344;
-        let t346 = minus_gproximal_wy_leg3 * t344;
-        let t347 = minus_gproximal_wz_leg3 * t344;
-        let minus_rate_proximal_leg3 = t298 * t318;
-        let t355 = t318 * rate_distal_leg3;
-        let t356 = t313 * t333;
-        let t358 = t355 + t356 + t355;
-        let t359 = c_distal_leg3 * t358;
-        let t361 = t318 * t319;
-        let t362 = gdistal_wx_leg3 * t361;
-        let t363 = minus_gproximal_wx_leg3 * t359 - t362;
-        let t367 = minus_gproximal_wy_leg3 * t359 + minus_c_proximal_leg3 * t361;
-        let t370 = minus_gproximal_wz_leg3 * t359 - t362;
-        let t372 = t318 * t318;
-        let t373 = t319 * t319;
+        let t317 = c_distal_leg3 * t302;
+        let t322 = t301 * twist[0] + t305 * twist[1] + t308 * twist[2];
+        let t323 = t317 * t322;
+        let t324 = rate_distal_leg3 * t323;
+        let t325 = minus_s_distal_leg3 * t298;
+        let t326 = 0.7071067811865476 * c_distal_leg3;
+        let t327 = t325 - t326;
+        let t329 = minus_s_proximal_leg3 * minus_s_distal_leg3;
+        let t332 = t325 + t326;
+        let minus_rate_wrist_leg3 = t323 + t327 * twist[0] + t329 * twist[1]
+            + t332 * twist[2];
+        let t338 = t301 * acceleration[0] + t305 * acceleration[1]
+            + t308 * acceleration[2] + t324 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t302 * t338;
+        let t340 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t305 * t302;
+        let t342 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t308 * t302;
+        let t344 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t345 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t349 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let t350 = minus_gproximal_wx_leg3 * t349;
+        let t351 = minus_gproximal_wy_leg3 * t349;
+        let t352 = minus_gproximal_wz_leg3 * t349;
+        let minus_rate_proximal_leg3 = t302 * t322;
+        let t360 = t322 * t323;
+        let t361 = gdistal_wx_leg3 * t360;
+        let t363 = t338 - t324 - t324;
+        let t364 = minus_s_distal_leg3 * t363;
+        let t366 = t361 + minus_gproximal_wx_leg3 * t364;
+        let t369 = minus_c_proximal_leg3 * t360 - minus_gproximal_wy_leg3 * t364;
+        let t371 = t361 + minus_gproximal_wz_leg3 * t364;
+        let t372 = t322 * t322;
+        let t373 = t323 * t323;
         let t374 = t372 - t373;
         let t375 = gdistal_wx_leg3 * t374;
-        let t379 = minus_s_distal_leg3 * t358
-            + t313 * (minus_rate_dot_proximal_leg3 - t359);
-        let t387 = gdistal_wx_leg3 * t333;
-        let t388 = rate_distal_leg3 * rate_distal_leg3;
+        let t376 = t322 * rate_distal_leg3;
+        let t377 = t317 * t338;
+        let t382 = minus_s_distal_leg3 * (t376 + t377 + t376) + c_distal_leg3 * t363;
+        let t390 = gdistal_wx_leg3 * t338;
+        let t391 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t318 * minus_rate_wrist_leg3;
-        let t400 = c_distal_leg3 * (t388 - t372)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t361);
-        let t412 = c_distal_leg3 * (t361 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t373 - t388);
-        let t414 = gdistal_wx_leg3 * t356;
-        let t421 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t423 = c_distal_leg3 * t340;
-        let t425 = 9.81 * t327;
-        let t426 = gdistal_wx_leg3 * t425;
-        let t439 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t440 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t439 * t440;
-        let t442 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t443 = c_distal_leg4 * t442;
-        let t444 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t445 = t443 + t444;
-        let t449 = t443 - t444;
+            - t322 * minus_rate_wrist_leg3;
+        let t403 = c_distal_leg3 * (t391 - t372)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t360);
+        let t418 = c_distal_leg3 * (t360 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t373 - t391);
+        let t420 = gdistal_wx_leg3 * t377;
+        let t427 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t429 = c_distal_leg3 * t345;
+        let t431 = 9.81 * t332;
+        let t432 = gdistal_wx_leg3 * t431;
+        let t445 = minus_s_proximal_leg4 * c_distal_leg4;
+        let t446 = 1.0 / minus_s_distal_leg4;
+        let gproximal_wx_leg4 = t445 * t446;
+        let t448 = 0.7071067811865476 * minus_c_proximal_leg4;
+        let t449 = c_distal_leg4 * t448;
+        let t450 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t451 = t449 + t450;
+        let t455 = t449 - t450;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t458 = c_distal_leg4 * t440;
-        let t463 = t445 * twist[1] - t439 * twist[0] + t449 * twist[2];
-        let t464 = t458 * t463;
-        let t465 = minus_s_distal_leg4 * t442;
-        let t466 = 0.7071067811865476 * c_distal_leg4;
-        let t467 = t465 - t466;
-        let t469 = minus_s_proximal_leg4 * minus_s_distal_leg4;
-        let t472 = t465 + t466;
-        let minus_rate_wrist_leg4 = t464 + t467 * twist[1] - t469 * twist[0]
-            + t472 * twist[2];
-        let t478 = t445 * acceleration[1] - t439 * acceleration[0]
-            + t449 * acceleration[2] + rate_distal_leg4 * (t464 + minus_rate_wrist_leg4);
-        let minus_rate_dot_proximal_leg4 = t440 * t478;
-        let t480 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t445 * t440;
-        let t482 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t449 * t440;
-        let t484 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t485 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t489 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t490 = gproximal_wx_leg4 * t489;
-        let t491 = minus_gproximal_wy_leg4 * t489;
-        let t492 = minus_gproximal_wz_leg4 * t489;
-        let minus_rate_proximal_leg4 = t440 * t463;
-        let t500 = t463 * rate_distal_leg4;
-        let t501 = t458 * t478;
-        let t503 = t500 + t501 + t500;
-        let t504 = c_distal_leg4 * t503;
-        let t506 = t463 * t464;
-        let t508 = gproximal_wx_leg4 * t504 + minus_c_proximal_leg4 * t506;
-        let t511 = gdistal_wy_leg4 * t506;
-        let t512 = minus_gproximal_wy_leg4 * t504 - t511;
-        let t515 = minus_gproximal_wz_leg4 * t504 - t511;
-        let t520 = minus_s_distal_leg4 * t503
-            + t458 * (minus_rate_dot_proximal_leg4 - t504);
-        let t522 = t463 * t463;
-        let t523 = t464 * t464;
-        let t524 = t522 - t523;
-        let t527 = gdistal_wy_leg4 * t524;
-        let t532 = rate_distal_leg4 * rate_distal_leg4;
+        let t464 = c_distal_leg4 * t446;
+        let t469 = t451 * twist[1] - t445 * twist[0] + t455 * twist[2];
+        let t470 = t464 * t469;
+        let t471 = rate_distal_leg4 * t470;
+        let t472 = minus_s_distal_leg4 * t448;
+        let t473 = 0.7071067811865476 * c_distal_leg4;
+        let t474 = t472 - t473;
+        let t476 = minus_s_proximal_leg4 * minus_s_distal_leg4;
+        let t479 = t472 + t473;
+        let minus_rate_wrist_leg4 = t470 + t474 * twist[1] - t476 * twist[0]
+            + t479 * twist[2];
+        let t485 = t451 * acceleration[1] - t445 * acceleration[0]
+            + t455 * acceleration[2] + t471 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t446 * t485;
+        let t487 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t451 * t446;
+        let t489 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t455 * t446;
+        let t491 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t492 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t496 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let t497 = gproximal_wx_leg4 * t496;
+        let t498 = minus_gproximal_wy_leg4 * t496;
+        let t499 = minus_gproximal_wz_leg4 * t496;
+        let minus_rate_proximal_leg4 = t446 * t469;
+        let t508 = t485 - t471 - t471;
+        let t509 = minus_s_distal_leg4 * t508;
+        let t511 = t469 * t470;
+        let t513 = minus_c_proximal_leg4 * t511 - gproximal_wx_leg4 * t509;
+        let t514 = gdistal_wy_leg4 * t511;
+        let t516 = t514 + minus_gproximal_wy_leg4 * t509;
+        let t518 = t514 + minus_gproximal_wz_leg4 * t509;
+        let t519 = t469 * rate_distal_leg4;
+        let t520 = t464 * t485;
+        let t525 = minus_s_distal_leg4 * (t519 + t520 + t519) + c_distal_leg4 * t508;
+        let t527 = t469 * t469;
+        let t528 = t470 * t470;
+        let t529 = t527 - t528;
+        let t532 = gdistal_wy_leg4 * t529;
+        let t537 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t463 * minus_rate_wrist_leg4;
-        let t544 = c_distal_leg4 * (t532 - t522)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t506);
-        let t548 = gdistal_wy_leg4 * t478;
-        let t557 = c_distal_leg4 * (t506 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t523 - t532);
-        let t562 = gdistal_wy_leg4 * t501;
-        let t567 = gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t568 = 9.81 * t472;
-        let t570 = c_distal_leg4 * t485;
-        let t574 = gdistal_wy_leg4 * t568;
-        let t580 = 2.0 * pose[2];
-        let t581 = pose[2] * t580;
-        let t583 = 2.0 * pose[3];
-        let t584 = pose[3] * t583;
-        let t585 = 1.0 - t581 - t584;
-        let t587 = 2.0 * pose[1];
-        let t588 = pose[2] * t587;
-        let t589 = pose[0] * t583;
-        let t590 = t588 + t589;
-        let t593 = pose[3] * t587;
-        let t594 = pose[0] * t580;
-        let t595 = t593 - t594;
-        let t597 = t585 * acceleration[0] + t590 * acceleration[1]
-            + t595 * acceleration[2];
-        let t599 = t588 - t589;
-        let t604 = t585 * twist[0] + t590 * twist[1] + t595 * twist[2];
-        let t605 = t593 + t594;
-        let t607 = pose[3] * t580;
-        let t608 = pose[0] * t587;
-        let t609 = t607 - t608;
-        let t613 = 1.0 - pose[1] * t587;
-        let t614 = t613 - t581;
-        let t616 = t605 * twist[0] + t609 * twist[1] + t614 * twist[2];
-        let t617 = t604 * t616;
-        let t618 = t599 * t617;
-        let t621 = t613 - t584;
-        let t624 = t607 + t608;
-        let t626 = t599 * twist[0] + t621 * twist[1] + t624 * twist[2];
-        let t627 = t604 * t626;
-        let t628 = t605 * t627;
-        let t631 = t621 * t617;
-        let t633 = t609 * t627;
-        let t636 = t624 * t617;
-        let t638 = t614 * t627;
-        let t644 = t599 * acceleration[0] + t621 * acceleration[1]
-            + t624 * acceleration[2];
-        let t645 = t644 - t617;
-        let t647 = t626 * t616;
-        let t648 = t597 + t647;
-        let t651 = t604 * t604;
-        let t652 = t626 * t626;
-        let t653 = t651 - t652;
-        let t670 = t605 * acceleration[0] + t609 * acceleration[1]
-            + t614 * acceleration[2];
-        let t671 = t670 + t627;
-        let t673 = t616 * t616;
-        let t674 = t673 - t651;
-        let t677 = t597 - t647;
-        let t691 = t585 * t647;
-        let t695 = t590 * t647;
-        let t699 = t595 * t647;
-        let t702 = t652 - t673;
-        let t704 = t670 - t627;
-        let t707 = t644 + t617;
+            - t469 * minus_rate_wrist_leg4;
+        let t549 = c_distal_leg4 * (t537 - t527)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t511);
+        let t553 = gdistal_wy_leg4 * t485;
+        let t565 = c_distal_leg4 * (t511 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t528 - t537);
+        let t570 = gdistal_wy_leg4 * t520;
+        let t575 = gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t576 = 9.81 * t479;
+        let t578 = c_distal_leg4 * t492;
+        let t582 = gdistal_wy_leg4 * t576;
+        let t588 = 2.0 * pose[2];
+        let t589 = pose[2] * t588;
+        let t591 = 2.0 * pose[3];
+        let t592 = pose[3] * t591;
+        let t593 = 1.0 - t589 - t592;
+        let t595 = 2.0 * pose[1];
+        let t596 = pose[2] * t595;
+        let t597 = pose[0] * t591;
+        let t598 = t596 + t597;
+        let t601 = pose[3] * t595;
+        let t602 = pose[0] * t588;
+        let t603 = t601 - t602;
+        let t605 = t593 * acceleration[0] + t598 * acceleration[1]
+            + t603 * acceleration[2];
+        let t607 = t596 - t597;
+        let t612 = t593 * twist[0] + t598 * twist[1] + t603 * twist[2];
+        let t613 = t601 + t602;
+        let t615 = pose[3] * t588;
+        let t616 = pose[0] * t595;
+        let t617 = t615 - t616;
+        let t621 = 1.0 - pose[1] * t595;
+        let t622 = t621 - t589;
+        let t624 = t613 * twist[0] + t617 * twist[1] + t622 * twist[2];
+        let t625 = t612 * t624;
+        let t626 = t607 * t625;
+        let t629 = t621 - t592;
+        let t632 = t615 + t616;
+        let t634 = t607 * twist[0] + t629 * twist[1] + t632 * twist[2];
+        let t635 = t612 * t634;
+        let t636 = t613 * t635;
+        let t639 = t629 * t625;
+        let t641 = t617 * t635;
+        let t644 = t632 * t625;
+        let t646 = t622 * t635;
+        let t652 = t607 * acceleration[0] + t629 * acceleration[1]
+            + t632 * acceleration[2];
+        let t653 = t652 - t625;
+        let t655 = t634 * t624;
+        let t656 = t605 + t655;
+        let t659 = t612 * t612;
+        let t660 = t634 * t634;
+        let t661 = t659 - t660;
+        let t678 = t613 * acceleration[0] + t617 * acceleration[1]
+            + t622 * acceleration[2];
+        let t679 = t678 + t635;
+        let t681 = t624 * t624;
+        let t682 = t681 - t659;
+        let t685 = t605 - t655;
+        let t699 = t593 * t655;
+        let t703 = t598 * t655;
+        let t707 = t603 * t655;
+        let t710 = t660 - t681;
+        let t712 = t678 - t635;
+        let t715 = t652 + t625;
         Ok([
             [
-                -t45, -(gproximal_wx_leg1 * t50), -t55, -t45,
+                -t46, -(gproximal_wx_leg1 * t51), -t56, -t46,
                 -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
-                gproximal_wx_leg1, -(t45 + t73), gproximal_wx_leg1 * t85 - t90,
-                gproximal_wx_leg1 * t109 - t111, t73, gproximal_wx_leg1 * t122 + t124, -t131,
-                -(gproximal_wx_leg1 * t133 + t136), -(9.81 * t34), t55, t190,
-                minus_gproximal_wx_leg2 * t195, t200, t190,
+                gproximal_wx_leg1, -t72, gproximal_wx_leg1 * t84 - t89,
+                gproximal_wx_leg1 * t108 - t110, -(t46 - t72), gproximal_wx_leg1 * t124 + t126,
+                -t133, -(gproximal_wx_leg1 * t135 + t138), -(9.81 * t35), t56, t193,
+                minus_gproximal_wx_leg2 * t198, t203, t193,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                -(t218 - t190),
-                -(minus_gproximal_wx_leg2 * t230 + minus_c_proximal_leg2 * t234),
-                -(minus_gproximal_wx_leg2 * t254 + minus_c_proximal_leg2 * t188),
-                t218,
-                minus_c_proximal_leg2 * t211 - minus_gproximal_wx_leg2 * t268,
+                -t219,
+                -(minus_gproximal_wx_leg2 * t231 + minus_c_proximal_leg2 * t235),
+                -(minus_gproximal_wx_leg2 * t255 + minus_c_proximal_leg2 * t191),
+                t193 + t219,
+                minus_c_proximal_leg2 * t226 - minus_gproximal_wx_leg2 * t272,
                 -(minus_c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t278 - minus_c_proximal_leg2 * t280,
-                9.81 * t179,
-                -t200,
-                t335,
-                minus_gproximal_wx_leg3 * t340,
-                t345,
-                t335,
+                minus_gproximal_wx_leg2 * t282 - minus_c_proximal_leg2 * t284,
+                9.81 * t182,
+                -t203,
+                t340,
+                minus_gproximal_wx_leg3 * t345,
+                t350,
+                t340,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t335 - t363,
-                t375 - minus_gproximal_wx_leg3 * t379,
-                t387 - minus_gproximal_wx_leg3 * t400,
-                t363,
-                -(minus_gproximal_wx_leg3 * t412 + t414),
-                t421,
-                minus_gproximal_wx_leg3 * t423 + t426,
-                9.81 * t324,
-                -t345,
-                -t480,
-                -(gproximal_wx_leg4 * t485),
-                -t490,
-                -t480,
+                t366,
+                t375 - minus_gproximal_wx_leg3 * t382,
+                t390 - minus_gproximal_wx_leg3 * t403,
+                t340 - t366,
+                -(minus_gproximal_wx_leg3 * t418 + t420),
+                t427,
+                minus_gproximal_wx_leg3 * t429 + t432,
+                9.81 * t329,
+                -t350,
+                -t487,
+                -(gproximal_wx_leg4 * t492),
+                -t497,
+                -t487,
                 -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
                 -::overact::math::signed(gproximal_wx_leg4, minus_rate_proximal_leg4),
                 gproximal_wx_leg4,
-                t508 - t480,
-                gproximal_wx_leg4 * t520 + minus_c_proximal_leg4 * t524,
-                gproximal_wx_leg4 * t544 + minus_c_proximal_leg4 * t478,
-                -t508,
-                gproximal_wx_leg4 * t557 - minus_c_proximal_leg4 * t501,
+                t513,
+                gproximal_wx_leg4 * t525 + minus_c_proximal_leg4 * t529,
+                gproximal_wx_leg4 * t549 + minus_c_proximal_leg4 * t485,
+                -(t487 + t513),
+                gproximal_wx_leg4 * t565 - minus_c_proximal_leg4 * t520,
                 minus_c_proximal_leg4 * rate_dot_distal_leg4,
-                minus_c_proximal_leg4 * t568 - gproximal_wx_leg4 * t570,
-                9.81 * t467,
-                t490,
-                t585 * t597 + t618 - t628,
-                t585 * t645 + t599 * t648 + t605 * t653,
-                t585 * t671 + t599 * t674 + t605 * t677,
-                t599 * t644 - t691 + t628,
-                t585 * t702 + t599 * t704 + t605 * t707,
-                t691 - t618 + t605 * t670,
-                9.81 * t590,
-                9.81 * t621,
-                9.81 * t609,
+                minus_c_proximal_leg4 * t576 - gproximal_wx_leg4 * t578,
+                9.81 * t474,
+                t497,
+                t593 * t605 + t626 - t636,
+                t593 * t653 + t607 * t656 + t613 * t661,
+                t593 * t679 + t607 * t682 + t613 * t685,
+                t607 * t652 - t699 + t636,
+                t593 * t710 + t607 * t712 + t613 * t715,
+                t699 - t626 + t613 * t678,
+                9.81 * t598,
+                9.81 * t629,
+                9.81 * t617,
             ],
             [
-                -t47, -(gproximal_wy_leg1 * t50), -t56, -t47,
+                -t48, -(gproximal_wy_leg1 * t51), -t57, -t48,
                 -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wy_leg1, minus_rate_proximal_leg1),
-                gproximal_wy_leg1, t77 - t47, gproximal_wy_leg1 * t85 + minus_c_proximal_leg1 * t89,
-                gproximal_wy_leg1 * t109 + minus_c_proximal_leg1 * t43, -t77,
-                gproximal_wy_leg1 * t122 - minus_c_proximal_leg1 * t68,
+                gproximal_wy_leg1, t75, gproximal_wy_leg1 * t84 + minus_c_proximal_leg1 * t88,
+                gproximal_wy_leg1 * t108 + minus_c_proximal_leg1 * t44, -(t48 + t75),
+                gproximal_wy_leg1 * t124 - minus_c_proximal_leg1 * t79,
                 minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                minus_c_proximal_leg1 * t135 - gproximal_wy_leg1 * t133, -(9.81 * t32), t56, -t192,
-                -(gproximal_wy_leg2 * t195), -t201, -t192,
+                minus_c_proximal_leg1 * t137 - gproximal_wy_leg1 * t135, -(9.81 * t33), t57, -t195,
+                -(gproximal_wy_leg2 * t198), -t204, -t195,
                 -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wy_leg2, minus_rate_proximal_leg2),
-                gproximal_wy_leg2, -(t192 + t222), gproximal_wy_leg2 * t230 - t238,
-                gproximal_wy_leg2 * t254 - t259, t222, gproximal_wy_leg2 * t268 + t272, -t277,
-                -(gproximal_wy_leg2 * t278 + t284), -(9.81 * t175), t201, t337,
-                minus_gproximal_wy_leg3 * t340, t346, t337,
+                gproximal_wy_leg2, -t222, gproximal_wy_leg2 * t231 - t239,
+                gproximal_wy_leg2 * t255 - t260, -(t195 - t222), gproximal_wy_leg2 * t272 + t276,
+                -t281, -(gproximal_wy_leg2 * t282 + t288), -(9.81 * t178), t204, t342,
+                minus_gproximal_wy_leg3 * t345, t351, t342,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -(t367 - t337),
-                -(minus_gproximal_wy_leg3 * t379 + minus_c_proximal_leg3 * t374),
-                -(minus_gproximal_wy_leg3 * t400 + minus_c_proximal_leg3 * t333),
-                t367,
-                minus_c_proximal_leg3 * t356 - minus_gproximal_wy_leg3 * t412,
+                -t369,
+                -(minus_gproximal_wy_leg3 * t382 + minus_c_proximal_leg3 * t374),
+                -(minus_gproximal_wy_leg3 * t403 + minus_c_proximal_leg3 * t338),
+                t342 + t369,
+                minus_c_proximal_leg3 * t377 - minus_gproximal_wy_leg3 * t418,
                 -(minus_c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t423 - minus_c_proximal_leg3 * t425,
-                -(9.81 * t322),
-                -t346,
-                t482,
-                minus_gproximal_wy_leg4 * t485,
-                t491,
-                t482,
+                minus_gproximal_wy_leg3 * t429 - minus_c_proximal_leg3 * t431,
+                -(9.81 * t327),
+                -t351,
+                t489,
+                minus_gproximal_wy_leg4 * t492,
+                t498,
+                t489,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t482 - t512,
-                t527 - minus_gproximal_wy_leg4 * t520,
-                t548 - minus_gproximal_wy_leg4 * t544,
-                t512,
-                -(minus_gproximal_wy_leg4 * t557 + t562),
-                t567,
-                minus_gproximal_wy_leg4 * t570 + t574,
-                9.81 * t469,
-                -t491,
-                t590 * t597 + t631 - t633,
-                t590 * t645 + t621 * t648 + t609 * t653,
-                t590 * t671 + t621 * t674 + t609 * t677,
-                t621 * t644 - t695 + t633,
-                t590 * t702 + t621 * t704 + t609 * t707,
-                t695 - t631 + t609 * t670,
-                -(9.81 * t585),
-                -(9.81 * t599),
-                -(9.81 * t605),
+                t516,
+                t532 - minus_gproximal_wy_leg4 * t525,
+                t553 - minus_gproximal_wy_leg4 * t549,
+                t489 - t516,
+                -(minus_gproximal_wy_leg4 * t565 + t570),
+                t575,
+                minus_gproximal_wy_leg4 * t578 + t582,
+                9.81 * t476,
+                -t498,
+                t598 * t605 + t639 - t641,
+                t598 * t653 + t629 * t656 + t617 * t661,
+                t598 * t679 + t629 * t682 + t617 * t685,
+                t629 * t652 - t703 + t641,
+                t598 * t710 + t629 * t712 + t617 * t715,
+                t703 - t639 + t617 * t678,
+                -(9.81 * t593),
+                -(9.81 * t607),
+                -(9.81 * t613),
             ],
             [
-                t49, minus_gproximal_wz_leg1 * t50, t57, t49,
+                t50, minus_gproximal_wz_leg1 * t51, t58, t50,
                 minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wz_leg1,
-                t49 - t80,
-                t90 - minus_gproximal_wz_leg1 * t85,
-                t111 - minus_gproximal_wz_leg1 * t109,
-                t80,
-                -(minus_gproximal_wz_leg1 * t122 + t124),
-                t131,
-                minus_gproximal_wz_leg1 * t133 + t136,
+                t77,
+                t89 - minus_gproximal_wz_leg1 * t84,
+                t110 - minus_gproximal_wz_leg1 * t108,
+                t50 - t77,
+                -(minus_gproximal_wz_leg1 * t124 + t126),
+                t133,
+                minus_gproximal_wz_leg1 * t135 + t138,
                 0.0,
-                -t57,
-                t194,
-                minus_gproximal_wz_leg2 * t195,
-                t202,
-                t194,
+                -t58,
+                t197,
+                minus_gproximal_wz_leg2 * t198,
+                t205,
+                t197,
                 minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wz_leg2,
-                t194 - t225,
-                t238 - minus_gproximal_wz_leg2 * t230,
-                t259 - minus_gproximal_wz_leg2 * t254,
-                t225,
-                -(minus_gproximal_wz_leg2 * t268 + t272),
-                t277,
-                minus_gproximal_wz_leg2 * t278 + t284,
+                t224,
+                t239 - minus_gproximal_wz_leg2 * t231,
+                t260 - minus_gproximal_wz_leg2 * t255,
+                t197 - t224,
+                -(minus_gproximal_wz_leg2 * t272 + t276),
+                t281,
+                minus_gproximal_wz_leg2 * t282 + t288,
                 0.0,
-                -t202,
-                t339,
-                minus_gproximal_wz_leg3 * t340,
-                t347,
-                t339,
+                -t205,
+                t344,
+                minus_gproximal_wz_leg3 * t345,
+                t352,
+                t344,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t339 - t370,
-                t375 - minus_gproximal_wz_leg3 * t379,
-                t387 - minus_gproximal_wz_leg3 * t400,
-                t370,
-                -(minus_gproximal_wz_leg3 * t412 + t414),
-                t421,
-                minus_gproximal_wz_leg3 * t423 + t426,
+                t371,
+                t375 - minus_gproximal_wz_leg3 * t382,
+                t390 - minus_gproximal_wz_leg3 * t403,
+                t344 - t371,
+                -(minus_gproximal_wz_leg3 * t418 + t420),
+                t427,
+                minus_gproximal_wz_leg3 * t429 + t432,
                 0.0,
-                -t347,
-                t484,
-                minus_gproximal_wz_leg4 * t485,
-                t492,
-                t484,
+                -t352,
+                t491,
+                minus_gproximal_wz_leg4 * t492,
+                t499,
+                t491,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t484 - t515,
-                t527 - minus_gproximal_wz_leg4 * t520,
-                t548 - minus_gproximal_wz_leg4 * t544,
-                t515,
-                -(minus_gproximal_wz_leg4 * t557 + t562),
-                t567,
-                minus_gproximal_wz_leg4 * t570 + t574,
+                t518,
+                t532 - minus_gproximal_wz_leg4 * t525,
+                t553 - minus_gproximal_wz_leg4 * t549,
+                t491 - t518,
+                -(minus_gproximal_wz_leg4 * t565 + t570),
+                t575,
+                minus_gproximal_wz_leg4 * t578 + t582,
                 0.0,
-                -t492,
-                t595 * t597 + t636 - t638,
-                t595 * t645 + t624 * t648 + t614 * t653,
-                t595 * t671 + t624 * t674 + t614 * t677,
-                t624 * t644 - t699 + t638,
-                t595 * t702 + t624 * t704 + t614 * t707,
-                t699 - t636 + t614 * t670,
+                -t499,
+                t603 * t605 + t644 - t646,
+                t603 * t653 + t632 * t656 + t622 * t661,
+                t603 * t679 + t632 * t682 + t622 * t685,
+                t632 * t652 - t707 + t646,
+                t603 * t710 + t632 * t712 + t622 * t715,
+                t707 - t644 + t622 * t678,
                 0.0,
                 0.0,
                 0.0,

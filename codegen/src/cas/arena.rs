@@ -219,6 +219,11 @@ impl Arena {
         self.tables.borrow().symbols[id.0 as usize].name.clone()
     }
 
+    /// All symbols.
+    pub fn symbols(&self) -> impl Iterator<Item = SymbolId> + use<> {
+        (0..self.tables.borrow().symbols.len() as u32).map(SymbolId)
+    }
+
     /// The symbol of that name, made if it is new. It may stand for a number and, in a
     /// [`Direction`], for an angle.
     pub fn symbol(&self, name: &str) -> SymbolId {

@@ -139,11 +139,13 @@ fn number_of(
     sign * value
 }
 
-fn sign_of(value: f64) -> f64 {
+/// The sign of a value, ±1; 0 for 0.
+pub(crate) fn sign_of(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
 }
 
-fn angle_of(direction: &Direction, values: &dyn Fn(SymbolId) -> f64) -> f64 {
+/// The angle of a direction for given values of the symbols, rad.
+pub(crate) fn angle_of(direction: &Direction, values: &dyn Fn(SymbolId) -> f64) -> f64 {
     direction
         .terms()
         .iter()

@@ -7,7 +7,7 @@
 
 use super::fuse::{Arithmetic, Kind};
 use super::plan::{Pass, Slot};
-use super::trigonometry::sines_and_cosines;
+use super::trigonometry::{are_small, sines_and_cosines};
 use super::{BLOCK, signed};
 use pulp::NullaryFnOnce;
 use std::cell::Cell;
@@ -163,8 +163,17 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
     fn angles(&self, at: &Pass) {
         let angles = self.block(at.operands[0]);
         let (sines, cosines) = (self.block(at.results[0]), self.block(at.results[1]));
+        // Asked for the whole block, so that the loop is free of branches.
+        let are_small = angles
+            .iter()
+            .fold(true, |all, part| all & are_small(&load(part)));
         for part in 0..BLOCK / WIDTH {
-            let (sine, cosine) = sines_and_cosines::<WIDTH, FUSED>(load(&angles[part]));
+            let angles = load(&angles[part]);
+            let (sine, cosine) = if are_small {
+                sines_and_cosines::<WIDTH, FUSED>(angles)
+            } else {
+                (angles.map(f64::sin), angles.map(f64::cos))
+            };
             store(&sines[part], sine);
             store(&cosines[part], cosine);
         }

@@ -1,5 +1,6 @@
 //! The nodes that a function needs, with what they cost and who uses them.
 
+use super::digits::{Digits, Home};
 use crate::cas::arena::{Handle, Meaning, Op};
 use crate::cas::field::Element;
 use crate::cas::{Arena, Expr};
@@ -102,10 +103,17 @@ pub(super) struct Graph {
     /// The arena's index of each node; new ones have none.
     arena_index: Vec<Option<usize>>,
     changed: Vec<bool>,
+    /// What replacements are held against.
+    digits: Digits,
 }
 
 impl Graph {
-    pub(super) fn new<'a>(arena: &'a Arena, entries: &[Expr<'a>], guards: &[Expr<'a>]) -> Self {
+    pub(super) fn new<'a>(
+        arena: &'a Arena,
+        entries: &[Expr<'a>],
+        guards: &[Expr<'a>],
+        home: Home<'_>,
+    ) -> Self {
         let mut graph = Self {
             definitions: Vec::new(),
             meanings: Vec::new(),
@@ -119,20 +127,42 @@ impl Graph {
             inverses: Vec::new(),
             arena_index: Vec::new(),
             changed: Vec::new(),
+            digits: Digits::default(),
         };
         let mut numbers = HashMap::new();
         for entry in entries {
             let node = graph.reach(arena, entry.handle().index(), &mut numbers);
             graph.uses[node] += 1;
         }
+        let guards = guards.iter().filter_map(|guard| {
+            let node = *numbers.get(&guard.handle().index())?;
+            Some(Signed::new(node, guard.handle().is_negative()))
+        });
+        let guards: Vec<Signed> = guards.collect();
         // A guard's value stays as long as something is divided by it or its root is taken; held, it
         // keeps its own node and so its meaning for the reader.
-        for guard in guards {
-            if let Some(&node) = numbers.get(&guard.handle().index()) {
-                graph.uses[node] += 1;
+        for guard in &guards {
+            graph.uses[guard.node()] += 1;
+        }
+        graph.digits = Digits::new(&graph, arena, &guards, home);
+        graph
+    }
+
+    /// The arena's operation of a node that is not new.
+    pub(super) fn op(&self, arena: &Arena, node: usize) -> Option<Op> {
+        self.arena_index[node].map(|index| arena.op(index))
+    }
+
+    /// Some nodes and all that they are computed from.
+    pub(super) fn needed(&self, nodes: impl Iterator<Item = usize>) -> Vec<bool> {
+        let mut needed = vec![false; self.len()];
+        let mut stack: Vec<usize> = nodes.collect();
+        while let Some(node) = stack.pop() {
+            if !std::mem::replace(&mut needed[node], true) {
+                stack.extend(self.definitions[node].operands());
             }
         }
-        graph
+        needed
     }
 
     /// The number of an arena's node; operands come first.
@@ -189,7 +219,13 @@ impl Graph {
         let meaning = self.meaning_of(definition);
         let node = self.push(definition, meaning, scope);
         self.changed[node] = true;
+        self.digits.push(definition);
         node
+    }
+
+    /// Whether a form keeps the digits that a node's own form has near singular configurations.
+    pub(super) fn keeps_digits(&self, by: Definition, node: usize) -> bool {
+        self.digits.keeps(by, node)
     }
 
     pub(super) fn depth_of(&self, definition: Definition) -> u32 {
@@ -219,6 +255,7 @@ impl Graph {
         self.is_expensive.pop();
         self.arena_index.pop();
         self.changed.pop();
+        self.digits.pop();
     }
 
     pub(super) fn len(&self) -> usize {

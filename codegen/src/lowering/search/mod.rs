@@ -10,14 +10,17 @@
 //!
 //! What a replacement saves is counted exactly: the operations that nothing else needs any more
 //! (the node's *maximal fan-out free cone*, as in the resubstitution of logic synthesis), less those
-//! that it adds. No new divisor is ever introduced, so the function is defined wherever it was.
+//! that it adds. No new divisor is ever introduced, so the function is defined wherever it was, and no sum
+//! that cancels near singular configurations where the form that it replaces does not.
 
 mod cone;
+mod digits;
 mod graph;
 mod pairs;
 mod sieve;
 mod singles;
 
+pub use digits::Home;
 pub use graph::{Overlay, Place, Rewritten};
 
 use crate::cas::{Arena, Expr};
@@ -59,18 +62,20 @@ impl Effort {
     }
 }
 
-/// Other definitions for some of the nodes that the entries need.
+/// Other definitions for some of the nodes that the entries need. `home` are the inputs in the home
+/// configuration.
 #[must_use]
 pub fn search<'a>(
     arena: &'a Arena,
     entries: &[Expr<'a>],
     guards: &[Expr<'a>],
     effort: Effort,
+    home: Home<'_>,
 ) -> Overlay {
     if effort == Effort::None {
         return Overlay::default();
     }
-    let mut graph = Graph::new(arena, entries, guards);
+    let mut graph = Graph::new(arena, entries, guards, home);
     let mut rounds = if effort == Effort::Thorough {
         ROUNDS
     } else {

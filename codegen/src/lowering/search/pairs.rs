@@ -217,7 +217,10 @@ fn give(graph: &mut Graph, requests: &[Request], hit: &Hit, node: Signed) -> Opt
         if saving < i32::from(!undo.is_empty()) {
             continue;
         }
-        if graph.depend(by.operands(), target) || !graph.means(by, target) {
+        if graph.depend(by.operands(), target)
+            || !graph.means(by, target)
+            || !graph.keeps_digits(by, target)
+        {
             continue;
         }
         undo.push((target, graph.definitions[target]));

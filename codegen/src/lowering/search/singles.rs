@@ -66,7 +66,10 @@ fn best(
         if saving <= best.map_or(0, |(_, saving)| saving) {
             continue;
         }
-        if graph.depend(by.operands(), node) || !graph.means(by, node) {
+        if graph.depend(by.operands(), node)
+            || !graph.means(by, node)
+            || !graph.keeps_digits(by, node)
+        {
             continue;
         }
         best = Some((by, saving));
