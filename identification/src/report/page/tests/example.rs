@@ -1,0 +1,331 @@
+//! A made-up identification whose names are as hostile as names can be.
+
+use crate::{
+    essential::{Drift, Removal},
+    estimate::LineError,
+    identify::{
+        BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping,
+        Run, Stage,
+        figures::{
+            ConditionSeries, Figures, LineResidual, PredictionFigures, ResidualFigures,
+            ResidualSeries, RunFigures,
+        },
+        verdict::{Finding, FindingKind, Thresholds, TrackingError, Verdict},
+    },
+    regression::PartitionCondition,
+    report::{
+        Published, Units,
+        published::{PublishedEstimate, PublishedParameter, PublishedTorques, PublishedTracking},
+    },
+    settings::{Normalisation, Settings},
+    validation::{Series, TorqueComparison},
+};
+use overact::{Info, Sizes};
+
+/// A name that breaks whatever does not escape it.
+pub(super) const HOSTILE: &str = "a<b>&\"'\u{1}</table><script>x</script>";
+
+pub(super) fn series(name: &str) -> Series {
+    let time: Vec<f64> = (0..400).map(|index| f64::from(index) * 0.01).collect();
+    let measured: Vec<f64> = time.iter().map(|t| (6.0 * t).sin()).collect();
+    // The worst miss is at 3 s.
+    let predicted = time
+        .iter()
+        .map(|t| (6.0 * t).sin() - if (t - 3.0).abs() < 0.005 { 0.5 } else { 0.01 });
+    Series {
+        name: name.to_owned(),
+        predicted: predicted.collect(),
+        time: time.clone(),
+        measured,
+    }
+}
+
+fn parameter(name: &str, value: f64) -> ParameterEstimate {
+    ParameterEstimate {
+        name: name.to_owned(),
+        unit: String::from("kg m^2"),
+        column: 0,
+        value,
+        standard_deviation: 0.01 * value.abs(),
+        relative_standard_deviation_percent: 1.0,
+        correlated_standard_deviation: 0.02 * value.abs(),
+        true_value: Some(1.01 * value),
+        error_percent: Some(-1.0),
+    }
+}
+
+fn removal(name: &str, accepted: bool) -> Removal {
+    Removal {
+        name: name.to_owned(),
+        column: 1,
+        value: 0.1,
+        relative_standard_deviation_percent: 80.0,
+        deviation_ratio: 80.0,
+        relative_error_before_percent: 2.0,
+        relative_error_after_percent: 2.1,
+        f_statistic: 1.5,
+        significant: false,
+        held_out_before_percent: Some(2.2),
+        held_out_after_percent: None,
+        drift: Some(Drift {
+            parameter: HOSTILE.to_owned(),
+            percent: 3.0,
+            deviations: 0.5,
+            inputs_percent: 3.0,
+        }),
+        accepted,
+        reason: String::from("it is <needless>"),
+    }
+}
+
+fn estimate(model: &'static str, stage: Stage) -> Estimate {
+    Estimate {
+        model,
+        kept_actuators: vec![HOSTILE.to_owned()],
+        stage,
+        weighted: true,
+        parameters: vec![parameter(HOSTILE, 0.0445), parameter("m_platformR", -1.92)],
+        residual_norm: 1.0,
+        relative_error_percent: 2.4,
+        condition_number: f64::INFINITY,
+        equations: 1000,
+        residual_deviation: 1.0,
+        lines: vec![LineError::new("x", 1.0, 40.0, 1000)],
+        weights: vec![1.0],
+        partition: Some(PartitionCondition {
+            crossings: 0,
+            largest: 31.0,
+            run: HOSTILE.to_owned(),
+            sample: 3,
+            time: 0.1,
+        }),
+        removals: if stage == Stage::Essential {
+            vec![removal(HOSTILE, true), removal("fv_1", false)]
+        } else {
+            Vec::new()
+        },
+        stop: (stage == Stage::Essential).then(|| String::from("the next step was refused")),
+    }
+}
+
+fn cross_validation(model: &'static str) -> CrossValidation {
+    CrossValidation {
+        run: String::from("held out"),
+        payload: false,
+        model,
+        stage: Stage::Essential,
+        residual_norm: 1.0,
+        relative_error_percent: 3.0,
+        lines: Vec::new(),
+        torques: vec![LineError::new("leg1", 1.0, 20.0, 100)],
+        projected_torques: vec![LineError::new("leg1", 0.9, 20.0, 100)],
+        table: vec![TorqueComparison {
+            actuator: String::from("leg1"),
+            least_norm_percent: 5.0,
+            closure_percent: Some(5.5),
+        }],
+        line_series: Vec::new(),
+        torque_series: Vec::new(),
+    }
+}
+
+fn figures() -> Figures {
+    let run = |name: &str, identified| RunFigures {
+        run: name.to_owned(),
+        identified,
+        payload: identified,
+        time: vec![0.0, 1.0, 2.0],
+        coordinates: vec![String::from("x"), String::from("phi")],
+        pose: vec![vec![0.0, 0.1, 0.0], vec![0.0, f64::NAN, 1.0]],
+        conditions: vec![
+            ConditionSeries {
+                kept_actuators: Vec::new(),
+                condition: vec![2.0, 3.0, 2.0],
+                determinant: Vec::new(),
+            },
+            ConditionSeries {
+                kept_actuators: vec![String::from("leg1")],
+                condition: vec![2.0, f64::INFINITY, 40.0],
+                determinant: vec![0.1, -0.1, -0.2],
+            },
+        ],
+    };
+    let prediction = |name: &str, identified, model| PredictionFigures {
+        run: name.to_owned(),
+        identified,
+        model,
+        stage: Stage::Essential,
+        lines: vec![series("x"), series("phi")],
+        torques: vec![series("leg1")],
+    };
+    let residual = |model| ResidualFigures {
+        model,
+        stage: Stage::Essential,
+        lines: vec![LineResidual {
+            name: String::from("x"),
+            runs: vec![ResidualSeries {
+                run: HOSTILE.to_owned(),
+                time: vec![0.0, 1.0],
+                residual: vec![0.1, -0.1],
+            }],
+            lag_s: 0.01,
+            autocorrelation: vec![1.0, 0.5, 0.1],
+            white_bound: 0.06,
+            within_bound: 0.3,
+            frequency_hz: vec![0.0, 1.0],
+            power: vec![1.0, 0.0],
+        }],
+    };
+    Figures {
+        runs: vec![run(HOSTILE, true), run("held out", false)],
+        predictions: vec![
+            prediction(HOSTILE, true, "platform"),
+            prediction("held out", false, "platform"),
+            prediction(HOSTILE, true, "actuators"),
+        ],
+        residuals: vec![residual("platform"), residual("actuators")],
+    }
+}
+
+pub(super) fn settings() -> Settings {
+    Settings {
+        filter_order: 4,
+        filter_cutoff_hz: 100.0,
+        decimation: 50,
+        skip_start: 0,
+        velocity_dead_band: 0.0,
+        averaged_reversals: false,
+        skip_end: 0,
+        r_sigma: 10.0,
+        keep_significant: true,
+        normalisation: Normalisation::Unbiased,
+        asymmetric_friction: false,
+        weighted: true,
+        kept_actuators: vec![0],
+        seed: 1,
+    }
+}
+
+pub(super) fn identification() -> Identification {
+    let base = |name: &str, terms: &[(&str, f64)]| BaseParameter {
+        name: name.to_owned(),
+        parameter: String::from("zz_1"),
+        unit: String::from("kg m^2"),
+        regrouping: terms
+            .iter()
+            .map(|(parameter, coefficient)| Regrouping {
+                parameter: (*parameter).to_owned(),
+                coefficient: *coefficient,
+            })
+            .collect(),
+        true_value: Some(1.0),
+    };
+    Identification {
+        robot: HOSTILE.to_owned(),
+        runs: vec![Run {
+            name: HOSTILE.to_owned(),
+            samples: 5000,
+            sampling_frequency: 1000.0,
+            payload: true,
+            closure_residual: 1e-5,
+        }],
+        base_parameters: vec![
+            base(HOSTILE, &[(HOSTILE, 0.0784), ("m_2", -1.0)]),
+            base("fv_1", &[]),
+        ],
+        without_effect: vec![HOSTILE.to_owned()],
+        estimates: vec![
+            estimate("platform", Stage::Base),
+            estimate("platform", Stage::Essential),
+            estimate("actuators", Stage::Base),
+            estimate("actuators", Stage::Essential),
+        ],
+        cross_validation: vec![cross_validation("platform"), cross_validation("actuators")],
+        warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
+        findings: vec![Finding {
+            kind: FindingKind::ClippedTorque,
+            run: Some(HOSTILE.to_owned()),
+            actuator: Some(String::from("leg1")),
+            message: String::from("clipped"),
+        }],
+        verdicts: vec![
+            Verdict {
+                subject: String::from("case 1"),
+                trusted: true,
+                reasons: vec![String::from("the error 2.4 % is < 50 %")],
+            },
+            Verdict {
+                subject: String::from("case 2"),
+                trusted: false,
+                reasons: vec![HOSTILE.to_owned()],
+            },
+        ],
+        thresholds: Thresholds::default(),
+        tracking: ["pd", "computed torque, case 1"]
+            .iter()
+            .zip([8e-3, 2e-3])
+            .map(|(controller, largest)| TrackingError {
+                run: String::from("held out"),
+                controller: (*controller).to_owned(),
+                actuators: vec![String::from("leg1")],
+                largest: vec![largest],
+            })
+            .collect(),
+        settings: settings(),
+        figures: figures(),
+    }
+}
+
+pub(super) fn published() -> Published {
+    Published {
+        source: HOSTILE.to_owned(),
+        note: Some(HOSTILE.to_owned()),
+        actuators: vec![String::from("leg1")],
+        estimates: vec![PublishedEstimate {
+            model: String::from("platform"),
+            relative_error_percent: Some(11.0),
+            parameters: [(
+                String::from("m_platformR"),
+                PublishedParameter {
+                    value: 1.93,
+                    deviation_percent: Some(1.08),
+                },
+            )]
+            .into(),
+        }],
+        cross_validation: vec![PublishedTorques {
+            run: String::from("trajectory 1"),
+            model: String::from("platform"),
+            torques_percent: vec![9.1],
+        }],
+        tracking: vec![PublishedTracking {
+            run: String::from("trajectory 1"),
+            controller: String::from("case a"),
+            largest: vec![6.35e-3],
+        }],
+    }
+}
+
+pub(super) fn units() -> Units {
+    Units::new(&Info {
+        name: "robot",
+        sizes: Sizes {
+            pose: 2,
+            dof: 2,
+            actuators: 1,
+            joints: 1,
+            parameters: 0,
+            payload_parameters: 0,
+        },
+        legs: &[],
+        actuators: &["leg1"],
+        actuated_joints: &[0],
+        actuator_is_revolute: &[true],
+        coordinates: &["x", "phi"],
+        parameters: &[],
+        payload_parameters: &[],
+        home_pose: &[],
+        home_joints: &[],
+        kept_actuators: &[],
+    })
+}
