@@ -1,7 +1,7 @@
 //! Random regular states of a mechanism, found numerically: poses around home with joints that close
 //! every leg in the working mode of the home configuration.
 
-use crate::cas::field::mix;
+use crate::cas::Stream;
 use crate::mechanism::home::close_from;
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::{Mechanism, Motion};
@@ -17,24 +17,6 @@ pub struct State {
     pub twist: Vec<f64>,
     /// Their derivatives.
     pub acceleration: Vec<f64>,
-}
-
-/// A deterministic stream of numbers in (-1, 1).
-#[derive(Debug)]
-pub struct Stream(u64);
-
-impl Stream {
-    /// A stream for a seed.
-    #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Self(mix(seed))
-    }
-
-    /// The next number.
-    pub fn number(&mut self) -> f64 {
-        self.0 = mix(self.0);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
 }
 
 /// `count` random states. The spread around home is halved for a state that no leg's Newton iteration

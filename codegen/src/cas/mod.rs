@@ -24,6 +24,7 @@ pub mod number;
 pub mod print;
 pub mod ratio;
 mod sample;
+pub mod stream;
 pub mod vector;
 
 pub use angle::Angle;
@@ -33,4 +34,5 @@ pub use direction::{Direction, SymbolId};
 pub use expr::Expr;
 pub use number::Number;
 pub use ratio::Ratio;
+pub use stream::Stream;
 pub use vector::{Matrix3, Vector3};

@@ -89,8 +89,8 @@ impl Program {
 pub struct Evaluator {
     program: Program,
     single: Vec<f64>,
-    rows: Option<Arena>,
-    numbers: Option<Arena>,
+    rows: Option<Memory>,
+    numbers: Option<Memory>,
 }
 
 impl Evaluator {
@@ -120,20 +120,20 @@ impl Evaluator {
             return single::evaluate(program, inputs, output, &mut self.single);
         }
         // Numbers of a row lie side by side, so they are moved when all are there.
-        let arena = self
+        let memory = self
             .rows
-            .get_or_insert_with(|| Arena::new(program, usize::MAX));
+            .get_or_insert_with(|| Memory::new(program, usize::MAX));
         let width = program.entries.len();
         for first in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - first);
-            arena.load(program, first, count, inputs);
-            for stage in 0..arena.plan.stages.len() {
-                arena.run(stage);
+            memory.load(program, first, count, inputs);
+            for stage in 0..memory.plan.stages.len() {
+                memory.run(stage);
             }
-            let slots = arena.values();
-            check(&program.guards, &arena.plan.guards, slots, first, count)?;
+            let slots = memory.values();
+            check(&program.guards, &memory.plan.guards, slots, first, count)?;
             let block = rows::Block {
-                outputs: &arena.plan.outputs,
+                outputs: &memory.plan.outputs,
                 slots,
                 samples: count,
             };
@@ -156,16 +156,16 @@ impl Evaluator {
         mut take: impl FnMut(Number<'_>),
     ) -> Result<(), Failed> {
         let program = &self.program;
-        let arena = self
+        let memory = self
             .numbers
-            .get_or_insert_with(|| Arena::new(program, TOGETHER));
+            .get_or_insert_with(|| Memory::new(program, TOGETHER));
         for first in (0..samples).step_by(BLOCK) {
             let count = BLOCK.min(samples - first);
-            arena.load(program, first, count, inputs);
-            for stage in 0..arena.plan.stages.len() {
-                arena.run(stage);
-                let slots = arena.values();
-                for output in &arena.plan.outputs[arena.plan.stages[stage].outputs.clone()] {
+            memory.load(program, first, count, inputs);
+            for stage in 0..memory.plan.stages.len() {
+                memory.run(stage);
+                let slots = memory.values();
+                for output in &memory.plan.outputs[memory.plan.stages[stage].outputs.clone()] {
                     take(Number {
                         index: output.index,
                         first,
@@ -174,8 +174,8 @@ impl Evaluator {
                     });
                 }
             }
-            let slots = arena.values();
-            check(&program.guards, &arena.plan.guards, slots, first, count)?;
+            let slots = memory.values();
+            check(&program.guards, &memory.plan.guards, slots, first, count)?;
         }
         Ok(())
     }
@@ -183,14 +183,14 @@ impl Evaluator {
 
 /// The slots of a plan, a block each.
 #[derive(Debug)]
-struct Arena {
+struct Memory {
     plan: Plan,
     /// The slots, behind what aligns them.
     memory: Vec<f64>,
     start: usize,
 }
 
-impl Arena {
+impl Memory {
     /// Memory for a program whose numbers are handed out when `together` of them are there.
     fn new(program: &Program, together: usize) -> Self {
         let plan = Plan::new(program, together);

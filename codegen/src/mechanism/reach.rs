@@ -3,7 +3,7 @@
 use super::home::{close_anywhere, nearest};
 use super::structure::size;
 use super::{End, JointKind, Leg};
-use crate::states::Stream;
+use crate::cas::Stream;
 use nalgebra::Isometry3;
 
 /// What becomes of a leg that does not close from its rough home.

@@ -6,7 +6,7 @@
 //! the structure of the leg and not by its home configuration.
 
 use super::{JointKind, Leg};
-use crate::states::Stream;
+use crate::cas::Stream;
 use nalgebra::DMatrix;
 
 /// What is wrong with a leg in every configuration. Joints are indices of the leg.

@@ -11,8 +11,7 @@
 use super::graph::{Definition, Graph, Signed};
 use crate::cas::arena::Op;
 use crate::cas::calculus::{angle_of, sign_of};
-use crate::cas::{Arena, SymbolId};
-use crate::states::Stream;
+use crate::cas::{Arena, Stream, SymbolId};
 use std::collections::HashMap;
 
 /// Rays from the home configuration.

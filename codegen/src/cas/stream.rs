@@ -1,0 +1,21 @@
+//! Random numbers that are the same at every run and on every machine.
+
+use super::field::mix;
+
+/// A deterministic stream of numbers in (-1, 1).
+#[derive(Debug)]
+pub struct Stream(u64);
+
+impl Stream {
+    /// A stream for a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(mix(seed))
+    }
+
+    /// The next number.
+    pub fn number(&mut self) -> f64 {
+        self.0 = mix(self.0);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
