@@ -3,11 +3,12 @@
 
 use super::precise::{Precise, difference, rounded};
 use super::{Failure, description};
+use overact_codegen::cas::Stream;
 use overact_codegen::derivation::{Columns, Family, From};
 use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
-use overact_codegen::states::{Stream, pose_towards, random_states};
+use overact_codegen::states::{pose_towards, random_states};
 use overact_codegen::{Effort, Request, RobotModel, compile_with};
 
 /// Rays from the home pose on which singular configurations are approached.
