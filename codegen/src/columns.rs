@@ -9,7 +9,7 @@ use crate::derivation::{
     BodyParameter, Columns, Combination, Family, Formulation, From, JointsBy, Robot, Selection,
     Underivable, derive,
 };
-use crate::evaluation::{Evaluator, Rows};
+use crate::evaluation::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Effort, Program, Source};
 use crate::mechanism::{BaseColumns, Mechanism};
 use crate::states::{State, random_states};
@@ -146,9 +146,7 @@ pub fn sample(program: &Program, states: &[State], rows: usize, columns: usize) 
         })
         .collect();
     let mut sampled = DMatrix::zeros(states.len() * rows, columns);
-    // Regular states by construction: where a guard fails all the same, the rest stays zero and counts for
-    // nothing.
-    let _ = Evaluator::new(program).evaluate_numbers(states.len(), &inputs, |number| {
+    let done = Evaluator::new(program).evaluate_numbers(states.len(), &inputs, |number| {
         let (row, column) = (number.index / columns, number.index % columns);
         let mut column = sampled.column_mut(column);
         let places = column
@@ -159,5 +157,11 @@ pub fn sample(program: &Program, states: &[State], rows: usize, columns: usize) 
             .zip(number.values)
             .for_each(|(place, value)| *place = number.sign * value);
     });
+    // Regular states by construction: where a guard fails all the same, the rest from its block on is zero
+    // and counts for nothing.
+    if let Err(failed) = done {
+        let valid = failed.sample / BLOCK * BLOCK * rows;
+        sampled.rows_range_mut(valid..).fill(0.0);
+    }
     sampled
 }

@@ -1,8 +1,10 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
+use overact_codegen::columns::sample;
 use overact_codegen::derivation::{Columns, Family, From};
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::lowering::{Condition, Program};
+use overact_codegen::states::random_states;
 use overact_robots::DualV;
 use overact_tests::reference::robots;
 use overact_tests::support::backend::evaluate;
@@ -99,6 +101,25 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
         matches!(condition, Condition::Reach { .. }),
         "{condition:?}"
     );
+    Ok(())
+}
+
+#[test]
+fn what_follows_a_state_out_of_reach_counts_for_nothing() -> Result<(), Failure> {
+    let model = dualv()?;
+    let family = Family::IdmRedPlatform(Columns::Standard);
+    let function = model.function(family, From::Pose).ok_or("no function")?;
+    let [rows, columns] = function.program.output.shape[..] else {
+        return Err("the regressor is a matrix".into());
+    };
+    let mut states = random_states(&model.mechanism, STATES, 82);
+    let regular = sample(&function.program, &states, rows, columns);
+    states[BLOCK + 3].pose[0] = 3.0;
+    let found = sample(&function.program, &states, rows, columns);
+    let valid = BLOCK * rows;
+    assert_eq!(found.rows(0, valid), regular.rows(0, valid));
+    assert!(found.rows_range(valid..).iter().all(|x| *x == 0.0));
+    assert!(regular.rows_range(valid..).iter().any(|x| *x != 0.0));
     Ok(())
 }
 

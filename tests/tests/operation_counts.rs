@@ -106,6 +106,19 @@ fn no_other_tool_takes_fewer_operations() -> Result<(), Failure> {
 }
 
 #[test]
+fn thorough_search_takes_no_more() -> Result<(), Failure> {
+    let mut table = String::new();
+    for work in &WORKS {
+        let (_, quick) = line(work, Effort::Quick)?;
+        let (line, operations) = line(work, Effort::Thorough)?;
+        assert!(operations <= quick, "{line}");
+        writeln!(table, "{line}")?;
+    }
+    insta::assert_snapshot!(table);
+    Ok(())
+}
+
+#[test]
 fn operations_of_the_generated_models() -> Result<(), Failure> {
     let mut table = String::new();
     let folder = fs::read_dir(repository("generated/src"))?;

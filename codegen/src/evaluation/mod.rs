@@ -130,7 +130,7 @@ impl Evaluator {
             for stage in 0..memory.plan.stages.len() {
                 memory.run(stage);
             }
-            let slots = memory.values();
+            let slots = memory.slots();
             check(&program.guards, &memory.plan.guards, slots, first, count)?;
             let block = rows::Block {
                 outputs: &memory.plan.outputs,
@@ -164,7 +164,7 @@ impl Evaluator {
             memory.load(program, first, count, inputs);
             for stage in 0..memory.plan.stages.len() {
                 memory.run(stage);
-                let slots = memory.values();
+                let slots = memory.slots();
                 for output in &memory.plan.outputs[memory.plan.stages[stage].outputs.clone()] {
                     take(Number {
                         index: output.index,
@@ -174,7 +174,7 @@ impl Evaluator {
                     });
                 }
             }
-            let slots = memory.values();
+            let slots = memory.slots();
             check(&program.guards, &memory.plan.guards, slots, first, count)?;
         }
         Ok(())
@@ -186,7 +186,7 @@ impl Evaluator {
 struct Memory {
     plan: Plan,
     /// The slots, behind what aligns them.
-    memory: Vec<f64>,
+    values: Vec<f64>,
     start: usize,
 }
 
@@ -194,38 +194,38 @@ impl Memory {
     /// Memory for a program whose numbers are handed out when `together` of them are there.
     fn new(program: &Program, together: usize) -> Self {
         let plan = Plan::new(program, together);
-        let mut memory = vec![0.0; plan.slots * BLOCK + LINE];
+        let mut values = vec![0.0; plan.slots * BLOCK + LINE];
         // Vectors that lie across two lines of the cache take twice the time.
-        let start = memory.as_ptr().align_offset(LINE * size_of::<f64>());
+        let start = values.as_ptr().align_offset(LINE * size_of::<f64>());
         let start = start.min(LINE);
-        let slots = memory[start..].as_chunks_mut::<BLOCK>().0;
+        let slots = values[start..].as_chunks_mut::<BLOCK>().0;
         for &(slot, value) in &plan.constants {
             slots[slot].fill(value);
         }
         Self {
             plan,
-            memory,
+            values,
             start,
         }
     }
 
     /// Takes the inputs at `count` samples from number `first` on.
     fn load(&mut self, program: &Program, first: usize, count: usize, inputs: &[Rows<'_>]) {
-        let memory = Cell::from_mut(&mut self.memory[self.start..]);
-        let slots = memory.as_slice_of_cells().as_chunks().0;
+        let values = Cell::from_mut(&mut self.values[self.start..]);
+        let slots = values.as_slice_of_cells().as_chunks().0;
         inputs::load(program, &self.plan, first, count, inputs, slots);
     }
 
     /// Runs the passes of a stage.
     fn run(&mut self, stage: usize) {
-        let memory = Cell::from_mut(&mut self.memory[self.start..]);
-        let slots = memory.as_slice_of_cells().as_chunks().0;
+        let values = Cell::from_mut(&mut self.values[self.start..]);
+        let slots = values.as_slice_of_cells().as_chunks().0;
         let passes = self.plan.stages[stage].passes.clone();
         lanes::run(&self.plan.passes[passes], slots);
     }
 
-    fn values(&self) -> &[[f64; BLOCK]] {
-        self.memory[self.start..].as_chunks().0
+    fn slots(&self) -> &[[f64; BLOCK]] {
+        self.values[self.start..].as_chunks().0
     }
 }
 

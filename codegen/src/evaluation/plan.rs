@@ -1,6 +1,6 @@
 //! A program made ready for blocks: passes over a block, and the memory that values take.
 //!
-//! A value gets a slot of the arena, which is free again after the last use, so that what is alive at a
+//! A value gets a slot of the memory, which is free again after the last use, so that what is alive at a
 //! time stays in the nearest cache. Numbers of the output are handed out soon after they are computed, for
 //! the same reason: a model has hundreds of them.
 
@@ -8,7 +8,7 @@ use super::fuse::{Draft, RESULTS, Value, drafts};
 use crate::lowering::Program;
 use std::{collections::HashMap, ops::Range};
 
-/// A slot of the arena, which holds the values of one number over a block.
+/// A slot of the memory, which holds the values of one number over a block.
 pub(super) type Slot = usize;
 
 /// One pass over a block: one to three steps of the program.
@@ -55,7 +55,7 @@ pub(super) struct Plan {
     /// In the order in which they are handed out.
     pub(super) outputs: Vec<Output>,
     pub(super) guards: Vec<Slot>,
-    /// Slots of the arena.
+    /// Slots of the memory.
     pub(super) slots: usize,
 }
 

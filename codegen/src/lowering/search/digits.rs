@@ -4,9 +4,9 @@
 //! small, and a sum of large terms that gives one of them has lost the digits in which its terms agree.
 //! The derivation's own forms do well there, as products of small factors do. So the nodes are
 //! evaluated at states just before a guard refuses, on random rays from the home configuration, and once
-//! more with a random error after each operation (Monte Carlo arithmetic: D. S. Parker, 1997), which grows along the graph
-//! as rounding errors do. A form whose error is far larger than that of the node, at all states of some
-//! guard, is not taken.
+//! more with a random error after each operation (Monte Carlo arithmetic: D. S. Parker, 1997), which
+//! grows along the graph as rounding errors do. A form whose error is far larger than that of the node, at
+//! all states of some guard, is not taken.
 
 use super::graph::{Definition, Graph, Signed};
 use crate::cas::arena::Op;
@@ -33,7 +33,7 @@ const STEP: f64 = 1e-3;
 /// How much longer than the last one each step is.
 const GROWTH: f64 = 1.4;
 
-/// Steps of a ray at most: it is then some ten metres long.
+/// Steps of a ray at most: it is then some thirty metres long.
 const STEPS: usize = 28;
 
 /// Bisections of the last step, down to the last digit.
@@ -58,12 +58,15 @@ struct State {
     noisy: Vec<f64>,
 }
 
+/// The value of a node with its sign.
+fn signed(of: Signed, values: &[f64]) -> f64 {
+    let value = values[of.node()];
+    if of.is_negative() { -value } else { value }
+}
+
 /// What a sum, a product or a quotient evaluates to.
 fn evaluate(definition: Definition, values: &[f64]) -> f64 {
-    let value = |of: Signed| {
-        let value = values[of.node()];
-        if of.is_negative() { -value } else { value }
-    };
+    let value = |of: Signed| signed(of, values);
     match definition {
         Definition::Sum(a, b) => value(a) + value(b),
         Definition::Product(a, b) => value(a) * value(b),
@@ -178,10 +181,7 @@ impl<'g> Ray<'g> {
             known.map_or(f64::NAN, |(start, direction)| start + distance * direction)
         };
         let angle = |direction| angle_of(&self.arena.direction_at(direction), &symbol);
-        let value = |of: Signed| {
-            let value = values[of.node()];
-            if of.is_negative() { -value } else { value }
-        };
+        let value = |of: Signed| signed(of, values);
         match (
             self.graph.op(self.arena, node),
             self.graph.definitions[node],
