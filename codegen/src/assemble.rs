@@ -4,7 +4,7 @@ use crate::cas::Arena;
 use crate::derivation::{
     Columns, Family, From, GuardKind, JointsBy, Selection, Underivable, derive,
 };
-use crate::lowering::{Array, Condition, Effort, GuardedExpr, Program, lower};
+use crate::lowering::{Array, Condition, GuardedExpr, Program, Reach, lower};
 use crate::mechanism::Mechanism;
 
 /// How the joints of a robot follow from its pose: by rule, if one fits every leg.
@@ -66,7 +66,7 @@ pub fn program(
         array(family.name(), shape),
         &derived.entries,
         &guards,
-        effort(selection.effort, family),
+        reach(selection.reach, family),
         &|symbol| at_home(mechanism, symbol),
     ))
 }
@@ -84,12 +84,12 @@ fn at_home(mechanism: &Mechanism, symbol: &str) -> Option<f64> {
     values.get(index.parse::<usize>().ok()?).copied()
 }
 
-/// The effort that a function is worth: the identification models, which run at every sample of
-/// every log, are searched as hard as asked; the others quickly.
-fn effort(asked: Effort, family: Family) -> Effort {
+/// How far the search of a function goes: the identification models, which run at every sample of
+/// every log, are searched as far as asked; of the others only the nodes one by one.
+fn reach(asked: Reach, family: Family) -> Reach {
     match family {
         Family::IdmRedPlatform(_) => asked,
-        _ => asked.min(Effort::Quick),
+        _ => asked.min(Reach::Singles),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::derivation::{
     Underivable, derive,
 };
 use crate::evaluation::{BLOCK, Evaluator, Rows};
-use crate::lowering::{Effort, Program, Source};
+use crate::lowering::{Program, Reach, Source};
 use crate::mechanism::{BaseColumns, Mechanism};
 use crate::states::{State, random_states};
 use nalgebra::DMatrix;
@@ -84,7 +84,7 @@ pub fn base_parameters(
     Ok((base, exact))
 }
 
-/// Operations of the model with these columns, after a quick search: choices differ by little.
+/// Operations of the model with these columns, after a short search: choices differ by little.
 fn operations(
     mechanism: &Mechanism,
     selection: &Selection,
@@ -92,7 +92,7 @@ fn operations(
 ) -> Result<usize, Underivable> {
     let trial = Selection {
         base: base.iter().map(|b| b.parameter).collect(),
-        effort: Effort::Quick,
+        reach: Reach::Singles,
         ..selection.clone()
     };
     let family = Family::IdmRedPlatform(Columns::Base);

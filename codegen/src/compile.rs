@@ -7,7 +7,7 @@ use crate::derivation::{Columns, Family, From, Selection, Underivable};
 use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
 use crate::formulation::cheapest_formulation;
-use crate::lowering::Effort;
+use crate::lowering::{Effort, Reach};
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
@@ -85,7 +85,7 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
     let mut selection = Selection {
         kept_actuators: mechanism.kept_actuators.clone(),
         // The form of the model is chosen by what the derivation itself makes of it.
-        effort: Effort::None,
+        reach: Reach::Nothing,
         ..Selection::default()
     };
     selection.standard = present(
@@ -99,7 +99,7 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
     selection.base = base.iter().map(|b| b.parameter).collect();
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
-    selection.effort = request.effort.unwrap_or(request.otherwise);
+    selection.reach = request.effort.unwrap_or(request.otherwise).reach();
     let tree = mechanism.platform.is_none();
     let mut all = Family::all(&mechanism, joints);
     all.retain(|&(family, from)| (request.wanted)(&mechanism, family, from));

@@ -1,9 +1,9 @@
-//! What was chosen for a robot before its functions are derived: columns, actuators, forms, effort.
+//! What was chosen for a robot before its functions are derived: columns, actuators, forms, search.
 
 use super::regressor::BodyParameter;
 use super::robot::Formulation;
 use crate::cas::Number;
-use crate::lowering::Effort;
+use crate::lowering::Reach;
 
 /// What the derivation of a function needs beside the mechanism.
 #[derive(Debug, Clone, Default)]
@@ -20,8 +20,8 @@ pub struct Selection {
     pub formulation: Formulation,
     /// Dependent columns that are had more cheaply from others than from their definition.
     pub combined: Vec<Combination>,
-    /// How hard cheaper ways to write a function are searched.
-    pub effort: Effort,
+    /// How far cheaper ways to write a function are searched.
+    pub reach: Reach,
 }
 
 /// A column as a linear combination of other columns.

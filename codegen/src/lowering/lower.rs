@@ -1,7 +1,7 @@
 //! From the graph to the program: reachable nodes in an order in which operands come first.
 
 use super::program::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
-use super::search::{Effort, Home, Overlay, Place, Rewritten, search};
+use super::search::{Home, Overlay, Place, Reach, Rewritten, search};
 use super::trigonometry::{Plan, plan};
 use crate::cas::arena::{Handle, Op};
 use crate::cas::{Arena, Direction, Expr};
@@ -27,11 +27,11 @@ pub fn lower<'a>(
     output: Array,
     entries: &[Expr<'a>],
     guards: &[GuardedExpr<'a>],
-    effort: Effort,
+    reach: Reach,
     home: Home<'_>,
 ) -> Program {
     let guarded: Vec<Expr<'a>> = guards.iter().map(|g| g.value).collect();
-    let overlay = search(arena, entries, &guarded, effort, home);
+    let overlay = search(arena, entries, &guarded, reach, home);
     let mut lowering = Lowering::new(arena, inputs, entries, overlay);
     let (rows, columns) = match output.shape[..] {
         [rows, columns] => (rows, columns),

@@ -15,52 +15,19 @@
 
 mod cone;
 mod digits;
+mod dominators;
+mod effort;
 mod graph;
 mod pairs;
 mod sieve;
 mod singles;
 
 pub use digits::Home;
+pub use effort::{Effort, Reach};
 pub use graph::{Overlay, Place, Rewritten};
 
 use crate::cas::{Arena, Expr};
 use graph::Graph;
-
-/// How often pairs are searched at most: a later round has only what the earlier ones opened up.
-const ROUNDS: usize = 4;
-
-/// How hard a function's operations are searched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
-pub enum Effort {
-    /// Not at all: the derivation's own form.
-    None,
-    /// Nodes that are one operation away from others.
-    #[default]
-    Quick,
-    /// Also those that are two operations away, and operations that serve several nodes.
-    Thorough,
-}
-
-impl Effort {
-    /// All, the least first.
-    pub const ALL: [Self; 3] = [Self::None, Self::Quick, Self::Thorough];
-
-    /// The name in descriptions, attributes and on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Quick => "quick",
-            Self::Thorough => "thorough",
-        }
-    }
-
-    /// The effort of that name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|effort| effort.name() == name)
-    }
-}
 
 /// Other definitions for some of the nodes that the entries need. `home` are the inputs in the home
 /// configuration.
@@ -69,26 +36,25 @@ pub fn search<'a>(
     arena: &'a Arena,
     entries: &[Expr<'a>],
     guards: &[Expr<'a>],
-    effort: Effort,
+    reach: Reach,
     home: Home<'_>,
 ) -> Overlay {
-    if effort == Effort::None {
+    if reach == Reach::Nothing {
         return Overlay::default();
     }
     let mut graph = Graph::new(arena, entries, guards, home);
-    let mut rounds = if effort == Effort::Thorough {
-        ROUNDS
-    } else {
-        0
-    };
     let mut known = singles::Known::new(&graph);
+    let mut rounds = reach.rounds();
     loop {
         let mut saved = singles::improve(&mut graph, &mut known);
         if rounds > 0 {
             rounds -= 1;
-            saved += pairs::improve(&mut graph);
-            // There are new nodes.
-            known = singles::Known::new(&graph);
+            let by_pairs = pairs::improve(&mut graph, reach.whole());
+            if by_pairs > 0 {
+                // There are new nodes.
+                known = singles::Known::new(&graph);
+            }
+            saved += by_pairs;
         }
         if saved == 0 {
             return graph.overlay();

@@ -5,10 +5,9 @@
 //! This is done heading by heading, each with the nodes that its own are made of, because a leg's nodes
 //! have little to do with another leg's; a small function is searched as a whole.
 
+use super::dominators::Dominators;
 use super::graph::{ByValue, Definition, Graph, Signed, canonical};
 
-/// Up to so many nodes a function is searched as a whole.
-const WHOLE: usize = 700;
 /// More nodes than this are searched without pairs: the table of pairs grows with the square.
 const MOST: usize = 2500;
 
@@ -41,18 +40,18 @@ struct Hit {
     negative: bool,
 }
 
-/// Replaces nodes group by group; the operations saved.
-pub(super) fn improve(graph: &mut Graph) -> i32 {
-    groups(graph)
+/// Replaces nodes group by group, or together if there are no more than `whole`; the operations saved.
+pub(super) fn improve(graph: &mut Graph, whole: usize) -> i32 {
+    groups(graph, whole)
         .iter()
         .map(|group| improve_group(graph, group))
         .sum()
 }
 
 /// The nodes of each heading: first its own, then those they are made of.
-fn groups(graph: &Graph) -> Vec<(Vec<usize>, Vec<usize>)> {
+fn groups(graph: &Graph, whole: usize) -> Vec<(Vec<usize>, Vec<usize>)> {
     let live: Vec<usize> = (0..graph.len()).filter(|&n| graph.is_live(n)).collect();
-    if live.len() <= WHOLE {
+    if live.len() <= whole {
         return vec![(live.clone(), live)];
     }
     let mut scopes: Vec<u32> = live.iter().map(|&n| graph.scopes[n]).collect();
@@ -72,28 +71,21 @@ fn groups(graph: &Graph) -> Vec<(Vec<usize>, Vec<usize>)> {
 }
 
 fn improve_group(graph: &mut Graph, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
-    let mut cones = vec![0; graph.len()];
-    for &node in own {
-        let is_open = !matches!(
-            graph.definitions[node],
-            Definition::Leaf | Definition::Fixed(..)
-        );
-        if is_open && graph.is_live(node) {
-            cones[node] = graph.cone(node);
-        }
-    }
-    let targets: Vec<usize> = own.iter().copied().filter(|&n| cones[n] > 1).collect();
-    let (requests, heads) = requests(graph, &targets, all);
+    let tree = Dominators::new(graph);
+    let is_target = |node: &usize| {
+        let definition = graph.definitions[*node];
+        let is_open = !matches!(definition, Definition::Leaf | Definition::Fixed(..));
+        is_open && graph.is_live(*node) && tree.cone(*node) > 1
+    };
+    let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
+    let (requests, heads) = requests(graph, &tree, &targets, all);
     let mut hits = Vec::new();
     for_each_pair(graph, all, |definition, value| {
         let (key, negative) = canonical(value);
         let Some(&head) = heads.get(&key) else { return };
+        let bound = bound(&requests, head, &tree, definition);
         // What is there already is a matter of single operations.
-        if graph.find(value).is_some() {
-            return;
-        }
-        let bound = bound(&requests, head, &cones);
-        if bound > 0 {
+        if bound > 0 && graph.find(value).is_none() {
             hits.push(Hit {
                 bound,
                 definition,
@@ -108,7 +100,13 @@ fn improve_group(graph: &mut Graph, (own, all): &(Vec<usize>, Vec<usize>)) -> i3
         .sum()
 }
 
-fn requests(graph: &Graph, targets: &[usize], all: &[usize]) -> (Vec<Request>, ByValue<u32>) {
+/// What the targets ask for, but for what could save them nothing.
+fn requests(
+    graph: &Graph,
+    tree: &Dominators,
+    targets: &[usize],
+    all: &[usize],
+) -> (Vec<Request>, ByValue<u32>) {
     let divisors = graph.divisors();
     let mut requests: Vec<Request> = Vec::new();
     let mut heads: ByValue<u32> = ByValue::default();
@@ -127,6 +125,9 @@ fn requests(graph: &Graph, targets: &[usize], all: &[usize]) -> (Vec<Request>, B
             });
         };
         for &node in all.iter().filter(|&&n| n != target && graph.is_live(n)) {
+            if tree.cone(target) - tree.shared(target, node) <= 1 {
+                continue;
+            }
             let with = Signed::new(node, false);
             let of = graph.value(with);
             ask(value + -of, with, Form::Plus);
@@ -140,19 +141,26 @@ fn requests(graph: &Graph, targets: &[usize], all: &[usize]) -> (Vec<Request>, B
     (requests, heads)
 }
 
-/// What the value could save at most: each target's cone but one operation, and the value's own.
-fn bound(requests: &[Request], head: u32, cones: &[i32]) -> i32 {
+/// What the value could save at most: of each target's cone what the new form does not need itself, but
+/// one operation, and the value's own.
+fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definition) -> i32 {
     let mut bound = -1;
-    let mut last = u32::MAX;
+    // Requests of one target stand together.
+    let mut last = (u32::MAX, 0);
     let mut at = Some(head);
     while let Some(number) = at {
         let request = requests[number as usize];
-        // Requests of one target stand together.
-        if request.target != last {
-            last = request.target;
-            bound += cones[last as usize] - 1;
-        }
         at = request.next;
+        let target = request.target as usize;
+        let needed = definition.operands().chain([request.with.node()]);
+        let shared = needed.map(|node| tree.shared(target, node)).max();
+        let saving = tree.cone(target) - 1 - shared.unwrap_or(0);
+        if request.target != last.0 {
+            last = (request.target, 0);
+        }
+        // Of several forms the best one counts.
+        bound += (saving - last.1).max(0);
+        last.1 = last.1.max(saving);
     }
     bound
 }

@@ -1,0 +1,78 @@
+//! How hard a function's operations are searched.
+
+/// What is asked for, of a whole model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
+pub enum Effort {
+    /// Not at all: the derivation's own form.
+    None,
+    /// Within a few in a hundred of the thorough search, in a small part of its time.
+    #[default]
+    Quick,
+    /// As long as something is found.
+    Thorough,
+}
+
+impl Effort {
+    /// All, the least first.
+    pub const ALL: [Self; 3] = [Self::None, Self::Quick, Self::Thorough];
+
+    /// The name in descriptions, attributes and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Quick => "quick",
+            Self::Thorough => "thorough",
+        }
+    }
+
+    /// The effort of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|effort| effort.name() == name)
+    }
+
+    /// How far the search of the functions that matter most goes.
+    #[must_use]
+    pub const fn reach(self) -> Reach {
+        match self {
+            Self::None => Reach::Nothing,
+            Self::Quick => Reach::Headings,
+            Self::Thorough => Reach::Everything,
+        }
+    }
+}
+
+/// How far the search of one function goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
+pub enum Reach {
+    /// No node is looked at.
+    #[default]
+    Nothing,
+    /// Nodes that are one operation away from others.
+    Singles,
+    /// Once, also those that are two operations away from nodes of the same heading, and operations
+    /// that serve several of these.
+    Headings,
+    /// These again until nothing is found, in small functions among the nodes of all headings.
+    Everything,
+}
+
+impl Reach {
+    /// How often pairs are searched at most: a later round has only what the earlier ones opened up.
+    pub(super) const fn rounds(self) -> usize {
+        match self {
+            Self::Nothing | Self::Singles => 0,
+            Self::Headings => 1,
+            Self::Everything => 4,
+        }
+    }
+
+    /// Up to so many nodes a function's pairs are searched as a whole.
+    pub(super) const fn whole(self) -> usize {
+        match self {
+            Self::Everything => 700,
+            _ => 0,
+        }
+    }
+}
